@@ -1,0 +1,177 @@
+"""Numbering of the unknowns: fields on mesh nodes and global scalars, local and global.
+
+Local vectors hold every dof a rank touches (ghosts included), field by field.  Globally each
+rank owns a contiguous block, field by field; scalars (the rigid approach) sit on the last rank.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Field:
+    """One unknown: ``degree`` 1 or 2 on nodes, 0 for a global scalar.
+
+    support: ``body`` (all nodes of that degree), or the name of a boundary (its nodes only).
+    differential: its equation holds a time derivative (counts in the time error norm).
+    """
+
+    name: str
+    components: int
+    degree: int
+    support: str = "body"
+    differential: bool = False
+
+
+class Dofs:
+    """Dof numbers of a list of fields on a mesh."""
+
+    def __init__(self, mesh, fields: list[Field]) -> None:
+        self.mesh = mesh
+        self.fields = {f.name: f for f in fields}
+        comm = mesh.comm
+        last = comm.rank == comm.size - 1
+        self.nodes: dict[str, NDArray[np.int64]] = {}
+        self.base: dict[str, NDArray[np.int32]] = {}  # node -> local dof of component 0, or -1
+        self.range: dict[str, slice] = {}
+        owned_parts: list[NDArray[np.bool_]] = []
+        start = 0
+        for f in fields:
+            nodes = self._field_nodes(f)
+            if f.degree == 0:
+                count, owned = 1, np.array([last])
+            else:
+                count, owned = len(nodes) * f.components, np.repeat(mesh.owned[nodes], f.components)
+            base = np.full(len(mesh.coordinates) if f.degree else 1, -1, dtype=np.int32)
+            base[nodes] = start + f.components * np.arange(len(nodes), dtype=np.int32)
+            self.nodes[f.name], self.base[f.name] = nodes, base
+            self.range[f.name] = slice(start, start + count)
+            owned_parts.append(owned)
+            start += count
+        self.size_local = start
+        self.owned = np.concatenate(owned_parts) if owned_parts else np.zeros(0, bool)
+        self.count_owned = int(self.owned.sum())
+        self.global_numbers = self._number(comm)
+        self.size = comm.tompi4py().allreduce(self.count_owned)
+        self._scatter: PETSc.Scatter | None = None
+
+    def _field_nodes(self, f: Field) -> NDArray[np.int64]:
+        mesh = self.mesh
+        if f.degree == 0:
+            return np.zeros(1, dtype=np.int64)
+        cells = mesh.cells if f.degree == mesh.degree else mesh.vertices_of_cells
+        nodes = np.unique(cells)
+        if f.support != "body":
+            nodes = np.intersect1d(nodes, mesh.boundary_nodes(f.support))
+        return nodes.astype(np.int64)
+
+    def _number(self, comm: PETSc.Comm) -> NDArray[np.int32]:
+        """Global number of every local dof: owners number, ghosts are told."""
+        mesh = self.mesh
+        first = comm.tompi4py().exscan(self.count_owned) or 0
+        numbers = np.full(self.size_local, -1, dtype=np.int64)
+        numbers[self.owned] = first + np.arange(self.count_owned)
+        for f in self.fields.values():
+            dofs = np.arange(self.range[f.name].start, self.range[f.name].stop)
+            if f.degree == 0:
+                root = comm.size - 1
+                numbers[dofs] = comm.tompi4py().bcast(numbers[dofs], root=root)
+                continue
+            nodes = self.nodes[f.name]
+            numbers_of_nodes = np.zeros(len(mesh.coordinates))
+            numbers_of_nodes[nodes] = numbers[dofs[:: f.components]]
+            known = self._owners_value(numbers_of_nodes)[nodes].astype(np.int64)
+            numbers[dofs] = (known[:, None] + np.arange(f.components)).ravel()
+        if np.any(numbers < 0):
+            raise RuntimeError("a dof has no global number: boundary nodes differ between ranks")
+        return numbers.astype(np.int32)
+
+    def _owners_value(self, values: Array) -> Array:
+        """Per-node array (nnode,) with every ghost node set to its owner's value."""
+        mesh = self.mesh
+        v = PETSc.Vec().createMPI((int(mesh.owned.sum()), PETSc.DETERMINE), comm=mesh.comm)
+        first = v.getOwnershipRange()[0]
+        v.array[mesh.global_node[mesh.owned] - first] = values[mesh.owned]
+        wanted = PETSc.IS().createGeneral(mesh.global_node.astype(np.int32), PETSc.COMM_SELF)
+        local = PETSc.Vec().createSeq(len(values), comm=PETSc.COMM_SELF)
+        scatter = PETSc.Scatter().create(v, wanted, local, None)
+        scatter.scatter(v, local)
+        result = local.array.copy()
+        for o in (v, wanted, local, scatter):
+            o.destroy()
+        return result
+
+    # -- vectors ------------------------------------------------------------------------
+    def vector(self) -> PETSc.Vec:
+        v = PETSc.Vec().createMPI((self.count_owned, self.size), comm=self.mesh.comm)
+        v.set(0.0)
+        return v
+
+    def _plan(self) -> tuple[PETSc.Scatter, PETSc.Vec]:
+        if self._scatter is None:
+            self._work = PETSc.Vec().createSeq(self.size_local, comm=PETSc.COMM_SELF)
+            self._template = self.vector()
+            source = PETSc.IS().createGeneral(self.global_numbers, comm=PETSc.COMM_SELF)
+            self._scatter = PETSc.Scatter().create(self._template, source, self._work, None)
+            source.destroy()
+        return self._scatter, self._work
+
+    def to_local(self, x: PETSc.Vec) -> Array:
+        """Local copy (size_local,) of a global vector, ghosts filled."""
+        scatter, work = self._plan()
+        scatter.scatter(x, work, addv=PETSc.InsertMode.INSERT, mode=PETSc.ScatterMode.FORWARD)
+        return work.array.copy()
+
+    def add_to_global(self, local: Array, out: PETSc.Vec) -> None:
+        """out = sum over ranks of the local contributions."""
+        scatter, work = self._plan()
+        work.array[:] = local
+        out.set(0.0)
+        scatter.scatter(work, out, addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
+
+    def sum_local(self, local: Array) -> Array:
+        """Local array of contributions summed over ranks, consistent on every rank."""
+        total = self.vector()
+        self.add_to_global(local, total)
+        result = self.to_local(total)
+        total.destroy()
+        return result
+
+    def entity_dofs(self, name: str, domain) -> NDArray[np.int32]:
+        """(ne, nn) local number of component 0 at the nodes of each entity, -1 where absent."""
+        f, base = self.fields[name], self.base[name]
+        if f.degree == 0:
+            return np.full((len(domain), 1), base[0], dtype=np.int32)
+        if domain.name.startswith("nodes:"):
+            return np.ascontiguousarray(base[domain.cells][:, None])
+        cells = self.mesh.cells if f.degree == self.mesh.degree else self.mesh.vertices_of_cells
+        return np.ascontiguousarray(base[cells[domain.cells]])
+
+    def field(self, name: str, local: Array) -> Array:
+        """View (nodes, components) of one field in a local vector, in the order of ``nodes``."""
+        return local[self.range[name]].reshape(-1, self.fields[name].components)
+
+    def index_set(self, name: str) -> PETSc.IS:
+        """Owned global dofs of one field."""
+        part = np.zeros(self.size_local, bool)
+        part[self.range[name]] = True
+        return PETSc.IS().createGeneral(self.global_numbers[part & self.owned],
+                                        comm=self.mesh.comm)
+
+    def counts(self) -> dict[str, int]:
+        """Global number of unknowns of each field."""
+        comm = self.mesh.comm.tompi4py()
+        return {name: comm.allreduce(int(self.owned[r].sum())) for name, r in self.range.items()}
+
+    def destroy(self) -> None:
+        if self._scatter is not None:
+            for o in (self._scatter, self._work, self._template):
+                o.destroy()
+            self._scatter = None

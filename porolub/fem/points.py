@@ -1,0 +1,86 @@
+"""What a term sees at quadrature points, and where it puts its contributions.
+
+``Points`` evaluates fields lazily and once; ``Integrand`` sums the pointwise fluxes and tangents
+of all terms of a domain, so each matrix block is contracted once however many terms fill it.
+"""
+
+from __future__ import annotations
+
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porolub.fem import kernels
+from porolub.fem.dofs import Dofs
+from porolub.laws.kinematics import Deformation
+
+Array = NDArray[np.float64]
+
+VALUE, GRAD = False, True
+Slot = tuple[str, bool]
+
+
+class Points:
+    """Fields at the points of a slice of a domain.
+
+    Shapes: ``value`` (ne, nq) for one component, else (ne, nq, nc); ``grad`` (ne, nq, dim) or
+    (ne, nq, nc, dim).
+    """
+
+    def __init__(self, domain, dofs: Dofs, local: Array, rows: slice, finite: bool) -> None:
+        self.domain, self.dofs, self.local, self.rows = domain, dofs, local, rows
+        self.finite = finite
+        self.dim = domain.dim
+        self.position = domain.position[rows]
+        self.normal = domain.normal[rows]
+        self.weights = domain.weights[rows]
+        self._cache: dict[Slot, Array] = {}
+
+    def has(self, name: str) -> bool:
+        return name in self.dofs.fields
+
+    def _evaluate(self, name: str, grad: bool) -> Array:
+        if (name, grad) not in self._cache:
+            f, d = self.dofs.fields[name], self.domain
+            tables = d.tables(f.degree)
+            a = kernels.evaluate(tables.gradient if grad else tables.value, grad,
+                                 d.variant[self.rows], d.inverse[self.rows],
+                                 self.dofs.entity_dofs(name, d)[self.rows], f.components,
+                                 self.local)
+            self._cache[name, grad] = a[:, :, 0] if f.components == 1 else a
+        return self._cache[name, grad]
+
+    def value(self, name: str) -> Array:
+        return self._evaluate(name, VALUE)
+
+    def grad(self, name: str) -> Array:
+        return self._evaluate(name, GRAD)
+
+    @cached_property
+    def deformation(self) -> Deformation:
+        """Kinematics of ``u``; the undeformed state where the scene has no displacement."""
+        if self.has("u"):
+            return Deformation(self.grad("u"), self.finite)
+        return Deformation(np.zeros((*self.weights.shape, self.dim, self.dim)), False)
+
+    def constant(self, array: Array) -> Array:
+        """A (dim,) vector or (dim, dim) tensor repeated at every point."""
+        return np.broadcast_to(array, (*self.weights.shape, *np.shape(array)))
+
+
+class Integrand:
+    """Sums of pointwise residual fluxes and tangents, keyed by test (and trial) slot."""
+
+    def __init__(self, jacobian: bool) -> None:
+        self.wants_jacobian = jacobian
+        self.f: dict[Slot, Array] = {}
+        self.g: dict[tuple[Slot, Slot], Array] = {}
+
+    def residual(self, field: str, op: bool, array: Array) -> None:
+        key = (field, op)
+        self.f[key] = self.f[key] + array if key in self.f else array
+
+    def jacobian(self, test: str, op: bool, trial: str, trial_op: bool, array: Array) -> None:
+        key = ((test, op), (trial, trial_op))
+        self.g[key] = self.g[key] + array if key in self.g else array
