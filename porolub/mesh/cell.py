@@ -1,0 +1,132 @@
+"""Reference cells: which vertices make an edge, a face, and in which order nodes are listed.
+
+Node order of a cell is that of VTK (quad9, triangle6, hexahedron27, tetra10): vertices,
+then edges, then faces (hexahedra), then the centre (quads, hexahedra). Cells have a positive
+Jacobian. Faces list their vertices so that the normal points out of the cell: for a 2D edge
+(a, b) it is (y_b - y_a, x_a - x_b), for a 3D face it follows the right-hand rule.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A reference cell and how PETSc's closure of it maps onto our order.
+
+    `plex_vertices[i]` is the place of our vertex i among the vertices of the DMPlex closure;
+    likewise `plex_edges` and `plex_faces` (faces only in 3D; in 2D the edges are the faces).
+    `mirror` lists the vertices in an order that turns the cell's orientation round.
+    """
+
+    name: str
+    dim: int
+    vertices: int
+    edges: tuple[tuple[int, int], ...]
+    faces: tuple[tuple[int, ...], ...]
+    tensor: bool  # quads and hexahedra: faces and centre carry a node of degree 2
+    gmsh: int  # gmsh's number of the first-order element
+    mirror: tuple[int, ...]
+    plex_vertices: tuple[int, ...]
+    plex_edges: tuple[int, ...]
+    plex_faces: tuple[int, ...]
+
+    def nodes(self, degree: int) -> int:
+        """Nodes of one cell for Lagrange elements of degree 1 or 2."""
+        if degree == 1:
+            return self.vertices
+        inner = (len(self.faces) * (self.dim == 3) + 1) if self.tensor else 0
+        return self.vertices + len(self.edges) + inner
+
+    def face_nodes(self, degree: int) -> NDArray[np.int64]:
+        """Cell-local node numbers of every face (nface, nodes per face), vertices first."""
+        rows = []
+        pairs = [frozenset(edge) for edge in self.edges]
+        for number, face in enumerate(self.faces):
+            row = list(face)
+            if degree == 2:
+                ring = [(face[0], face[1])] if self.dim == 2 else zip(face, face[1:] + face[:1])
+                row += [self.vertices + pairs.index(frozenset(edge)) for edge in ring]
+                if self.dim == 3 and self.tensor:
+                    row.append(self.vertices + len(self.edges) + number)
+            rows.append(row)
+        return np.array(rows, dtype=np.int64)
+
+    def parents(self) -> list[NDArray[np.int64]]:
+        """Vertices whose mean is the straight position of each non-vertex node, by kind.
+
+        One array (count, vertices per entity) each for edges, inner faces and centre.
+        """
+        kinds = [np.array(self.edges)]
+        if self.tensor and self.dim == 3:
+            kinds.append(np.array(self.faces))
+        if self.tensor:
+            kinds.append(np.arange(self.vertices)[None])
+        return kinds
+
+
+QUAD = Cell(
+    name="quad",
+    dim=2,
+    vertices=4,
+    edges=((0, 1), (1, 2), (2, 3), (3, 0)),
+    faces=((0, 1), (1, 2), (2, 3), (3, 0)),
+    tensor=True,
+    gmsh=3,
+    mirror=(0, 3, 2, 1),
+    plex_vertices=(0, 1, 2, 3),
+    plex_edges=(0, 1, 2, 3),
+    plex_faces=(),
+)
+
+TRIANGLE = Cell(
+    name="triangle",
+    dim=2,
+    vertices=3,
+    edges=((0, 1), (1, 2), (2, 0)),
+    faces=((0, 1), (1, 2), (2, 0)),
+    tensor=False,
+    gmsh=2,
+    mirror=(0, 2, 1),
+    plex_vertices=(0, 1, 2),
+    plex_edges=(0, 1, 2),
+    plex_faces=(),
+)
+
+# PETSc turns hexahedra and tetrahedra round on reading: its bottom face runs clockwise.
+HEX = Cell(
+    name="hex",
+    dim=3,
+    vertices=8,
+    edges=(
+        *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
+        *((0, 4), (1, 5), (2, 6), (3, 7)),
+    ),
+    faces=((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (2, 3, 7, 6), (0, 3, 2, 1), (4, 5, 6, 7)),
+    tensor=True,
+    gmsh=5,
+    mirror=(0, 3, 2, 1, 4, 7, 6, 5),
+    plex_vertices=(0, 3, 2, 1, 4, 5, 6, 7),
+    plex_edges=(3, 2, 1, 0, 4, 5, 6, 7, 9, 8, 11, 10),
+    plex_faces=(5, 4, 2, 3, 0, 1),
+)
+
+TET = Cell(
+    name="tet",
+    dim=3,
+    vertices=4,
+    edges=((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
+    faces=((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)),
+    tensor=False,
+    gmsh=4,
+    mirror=(0, 2, 1, 3),
+    plex_vertices=(1, 0, 2, 3),
+    plex_edges=(0, 2, 1, 4, 3, 5),
+    plex_faces=(2, 3, 1, 0),
+)
+
+CELLS = {cell.name: cell for cell in (QUAD, TRIANGLE, HEX, TET)}
+FACET_GMSH = {"quad": 1, "triangle": 1, "hex": 3, "tet": 2}
+"""gmsh's number of the first-order element of a cell's faces."""

@@ -1,0 +1,90 @@
+"""A mesh as plain arrays on one rank, before PETSc sees it."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porolub.errors import SceneError
+from porolub.mesh.cell import CELLS, Cell
+
+Array = NDArray[np.float64]
+Index = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class RawMesh:
+    """Vertices, cells, named boundary facets.
+
+    points: (n, dim) vertex positions in mesh units
+    cells: (ncell, vertices per cell) vertex numbers
+    boundaries: name -> (nf, vertices per facet) vertex numbers
+    middle: positions of second-order nodes, one (k, m) array of sorted vertex numbers and one
+        (k, dim) array of positions for each kind (m = 2: edges, ...); empty if straight
+    """
+
+    cell: Cell
+    points: Array
+    cells: Index
+    boundaries: dict[str, Index]
+    middle: tuple[tuple[Index, Array], ...] = ()
+
+
+def signed_sizes(cell: Cell, points: Array, cells: Index) -> Array:
+    """Orientation measure of each cell (ncell,): negative for cells turned inside out."""
+    corner = points[cells]
+    if cell.name == "quad":
+        a, b = corner[:, 2] - corner[:, 0], corner[:, 3] - corner[:, 1]
+        return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+    if cell.name == "triangle":
+        a, b = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
+        return np.asarray(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
+    ends = (1, 2, 3) if cell.name == "tet" else (1, 3, 4)
+    a, b, c = (corner[:, end] - corner[:, 0] for end in ends)
+    return np.asarray(np.einsum("ij,ij->i", np.cross(a, b), c))
+
+
+def oriented(raw: RawMesh) -> RawMesh:
+    """The same mesh with every cell listed so that its Jacobian is positive.
+
+    Raises SceneError if a cell has no size.
+    """
+    sizes = signed_sizes(raw.cell, raw.points, raw.cells)
+    if np.any(sizes == 0):
+        where = raw.points[raw.cells[np.argmin(np.abs(sizes))]].mean(axis=0)
+        raise SceneError(f"the mesh has a cell of zero size near {where.tolist()} (mesh units).")
+    cells = raw.cells.copy()
+    turned = sizes < 0
+    cells[turned] = cells[turned][:, list(raw.cell.mirror)]
+    return replace(raw, cells=cells)
+
+
+def face_keys(facets: Index) -> Index:
+    """Facets as rows of sorted vertex numbers, so that equal facets have equal rows."""
+    return np.sort(np.asarray(facets, dtype=np.int64), axis=1)
+
+
+def match_rows(table: Index, rows: Index) -> Index:
+    """Position in `table` (distinct rows) of each row of `rows`; -1 where it is not there."""
+    both, inverse = np.unique(np.vstack([table, rows]), axis=0, return_inverse=True)
+    place = np.full(len(both), -1, dtype=np.int64)
+    inverse = inverse.reshape(-1)
+    place[inverse[: len(table)]] = np.arange(len(table))
+    return place[inverse[len(table) :]]
+
+
+def check_boundaries(raw: RawMesh) -> None:
+    """Raises SceneError unless every boundary facet is an outer face of exactly one cell."""
+    faces = np.vstack([raw.cells[:, list(face)] for face in raw.cell.faces])
+    distinct, times = np.unique(face_keys(faces), axis=0, return_counts=True)
+    outer = distinct[times == 1]
+    for name, facets in raw.boundaries.items():
+        inside = int((match_rows(outer, face_keys(facets)) < 0).sum())
+        if inside:
+            raise SceneError(
+                f"boundary '{name}' of the mesh has {inside} of {len(facets)} facets that are "
+                "not outer faces of its cells: a boundary must lie on the outside."
+            )
+
+
+__all__ = ["CELLS", "RawMesh", "check_boundaries", "face_keys", "match_rows", "oriented"]
