@@ -1,0 +1,18 @@
+"""What the user asks for: a TOML file in, a checked, frozen Scene out. Knows no solver."""
+
+from porolub.scene.effects import effects
+from porolub.scene.history import value_at
+from porolub.scene.read import load_scene, scene_from_dict
+from porolub.scene.resolved import write_resolved
+from porolub.scene.scene import Scene
+from porolub.scene.unknowns import estimate_unknowns
+
+__all__ = [
+    "Scene",
+    "effects",
+    "estimate_unknowns",
+    "load_scene",
+    "scene_from_dict",
+    "value_at",
+    "write_resolved",
+]

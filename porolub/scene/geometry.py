@@ -1,0 +1,152 @@
+"""The shape of the layer and the names of its boundaries.
+
+A sector is the part of an annulus about the origin within +- half_angle; ``lubricated`` is its
+outer arc, ``bone`` the inner one, ``inlet`` and ``outlet`` the two radial ends. A barrel is a
+sector with an axial width and, if wanted, a crown. A block is a rectangle or a cuboid.
+"""
+
+import math
+from pathlib import Path
+from typing import Annotated, Any, ClassVar, Literal, Self
+
+from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
+
+from porolub.scene.base import Section, broken, refused
+from porolub.scene.units import PositiveLength, SectorAngle
+
+
+class Shape(Section):
+    """Base of the shapes: which dimensions a shape exists in and what its boundaries are called.
+
+    ``boundary_names`` is None for a mesh file: its names are only known once it is read.
+    """
+
+    dimensions: ClassVar[tuple[int, ...]]
+    lubricated: ClassVar[str] = "lubricated"
+    bone: ClassVar[str] = "bone"
+    has_axis: ClassVar[bool] = True
+
+    def boundary_names(self, dimension: int) -> tuple[str, ...] | None:
+        """Return the names of the boundaries in a scene of the given dimension."""
+        raise NotImplementedError
+
+
+class Arc(Shape):
+    """What sector and barrel share; lengths in m, angle in rad."""
+
+    outer_radius: PositiveLength
+    thickness: PositiveLength
+    half_angle: SectorAngle
+
+    @property
+    def inner_radius(self) -> float:
+        """Radius of the bone surface, m."""
+        return self.outer_radius - self.thickness
+
+    @property
+    def surface_length(self) -> float:
+        """Length of the lubricated surface along the motion, m."""
+        return 2.0 * self.half_angle * self.outer_radius
+
+    @model_validator(mode="after")
+    def _has_an_inside(self) -> Self:
+        if self.thickness >= self.outer_radius:
+            raise broken(
+                f"geometry.thickness = {self.thickness:g} m must be less than "
+                f"geometry.outer_radius = {self.outer_radius:g} m."
+            )
+        return self
+
+
+class Sector(Arc):
+    """Annulus sector."""
+
+    dimensions = (2,)
+    shape: Literal["sector"]
+
+    def boundary_names(self, dimension: int) -> tuple[str, ...]:
+        """Return the names of the boundaries."""
+        return ("lubricated", "bone", "inlet", "outlet")
+
+
+class Barrel(Arc):
+    """Sector with the axial length ``width`` and, optionally, a crown; m."""
+
+    dimensions = (3,)
+    shape: Literal["barrel"]
+    width: PositiveLength
+    crown_radius: PositiveLength | None = None
+
+    def boundary_names(self, dimension: int) -> tuple[str, ...]:
+        """Return the names of the boundaries."""
+        return ("lubricated", "bone", "inlet", "outlet", "front", "back")
+
+    @model_validator(mode="after")
+    def _crown_spans_the_width(self) -> Self:
+        if self.crown_radius is not None and self.crown_radius <= self.width / 2:
+            raise broken(
+                f"geometry.crown_radius = {self.crown_radius:g} m must be greater than half of "
+                f"geometry.width = {self.width:g} m."
+            )
+        return self
+
+
+class Block(Shape):
+    """Rectangle of width and thickness, in three dimensions a cuboid of that depth; m."""
+
+    dimensions = (2, 3)
+    lubricated = "top"
+    bone = "bottom"
+    has_axis = False
+    shape: Literal["block"]
+    width: PositiveLength
+    thickness: PositiveLength
+    depth: PositiveLength | None = None
+
+    @property
+    def surface_length(self) -> float:
+        """Length of the lubricated surface along the motion, m."""
+        return self.width
+
+    def boundary_names(self, dimension: int) -> tuple[str, ...]:
+        """Return the names of the boundaries in a scene of the given dimension."""
+        plane = ("left", "right", "bottom", "top")
+        return plane if dimension == 2 else (*plane, "front", "back")
+
+
+def _components(value: Any) -> Any:
+    """Read a TOML array of numbers as a tuple of floats."""
+    numbers = isinstance(value, list | tuple) and all(
+        isinstance(v, int | float) and not isinstance(v, bool) and math.isfinite(v) for v in value
+    )
+    if not numbers or len(value) not in (2, 3) or not any(value):
+        raise refused("a direction is needed, such as [0.0, -1.0]")
+    return tuple(float(v) for v in value)
+
+
+class MeshFile(Shape):
+    """A user's mesh; ``path`` is relative to the scene file. Boundaries as named in the mesh.
+
+    ``plane_normal`` points from the layer to the rigid plane (components along the axes).
+    """
+
+    dimensions = (2, 3)
+    shape: Literal["file"]
+    path: Path
+    plane_normal: Annotated[tuple[float, ...], BeforeValidator(_components)] | None = None
+
+    @field_validator("path")
+    @classmethod
+    def _exists(cls, path: Path, info: ValidationInfo) -> Path:
+        base = (info.context or {}).get("base_dir") or Path()
+        full = (Path(base) / path.expanduser()).resolve()
+        if not full.is_file():
+            raise refused("there is no such mesh file")
+        return full
+
+    def boundary_names(self, dimension: int) -> tuple[str, ...] | None:
+        """Return None: any name may occur."""
+        return None
+
+
+Geometry = Annotated[Sector | Block | Barrel | MeshFile, Field(discriminator="shape")]

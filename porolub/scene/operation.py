@@ -1,0 +1,94 @@
+"""What is done to the layer: contact with the plane, motion, load, time."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, StrictBool, field_validator, model_validator
+
+from porolub.scene.base import Section, Whole, broken, refused
+from porolub.scene.history import (
+    AngularSpeedHistory,
+    ForceHistory,
+    Harmonic,
+    LengthHistory,
+    SpeedHistory,
+    value_at,
+)
+from porolub.scene.units import NUMBER, PositiveTime, Quantity
+
+Friction = Annotated[float, Quantity(NUMBER, at_least=0)]
+Tolerance = Annotated[float, Quantity(NUMBER, above=0, below=1)]
+
+
+class Contact(Section):
+    """Contact with the rigid plane; ``friction`` is the coefficient of dry friction.
+
+    ``friction_traction`` says whether friction shears the skeleton; it is reported in any case.
+    """
+
+    friction: Friction = 0.0
+    friction_traction: StrictBool = False
+
+
+class Rotation(Section):
+    """The body rotates about its axis; ``speed`` in rad/s, anticlockwise positive."""
+
+    kind: Literal["rotation"]
+    speed: AngularSpeedHistory
+
+    def at(self, t: float) -> float:
+        """Return the angular speed at time ``t`` in s, rad/s."""
+        return value_at(self.speed, t)
+
+
+class Sliding(Section):
+    """The plane slides, the body is at rest; ``speed`` in m/s along ``direction``."""
+
+    kind: Literal["sliding"]
+    speed: SpeedHistory
+    direction: Literal["x", "z"] = "x"
+
+    def at(self, t: float) -> float:
+        """Return the speed of the plane at time ``t`` in s, m/s."""
+        return value_at(self.speed, t)
+
+
+Motion = Annotated[Rotation | Sliding, Field(discriminator="kind")]
+
+
+class Load(Section):
+    """Either the load (N/m in two dimensions, N in three) or the approach of the plane (m).
+
+    The approach is positive when the plane is pressed in.
+    """
+
+    force: ForceHistory | None = None
+    approach: LengthHistory | None = None
+
+    @field_validator("force")
+    @classmethod
+    def _presses(cls, force: float | Harmonic[float] | None) -> float | Harmonic[float] | None:
+        if isinstance(force, float) and force <= 0:
+            raise refused("the value must be greater than 0")
+        return force
+
+    @model_validator(mode="after")
+    def _one_of_two(self) -> Self:
+        if (self.force is None) == (self.approach is None):
+            both = "both are given" if self.force is not None else "neither is given"
+            raise broken(f"exactly one of load.force and load.approach is needed; {both}.")
+        return self
+
+    def at(self, t: float) -> float:
+        """Return the force (N/m or N) or the approach (m), whichever is given, at ``t`` in s."""
+        history = self.force if self.force is not None else self.approach
+        assert history is not None  # _one_of_two
+        return value_at(history, t)
+
+
+class Time(Section):
+    """A transient run: times in s, relative ``tolerance`` of a step, ``order`` of the BDF."""
+
+    end: PositiveTime
+    tolerance: Tolerance = 1e-3
+    step_max: PositiveTime | None = None
+    order: Annotated[Literal[1, 2, 3], Whole] = 2

@@ -1,0 +1,50 @@
+"""A scene with nothing left to assume: every key, defaults included, with SI units."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import tomli_w
+
+from porolub.scene.geometry import MeshFile
+
+if TYPE_CHECKING:
+    from porolub.scene.scene import Scene
+
+
+def resolved(scene: "Scene") -> dict[str, Any]:
+    """Return the scene as the tables of a scene file; read again it gives an equal scene.
+
+    Absent sections and keys that do not apply to the shape are left out.
+    """
+    tables = scene.model_dump(
+        mode="json", exclude_none=True, context={"dimension": scene.dimension}
+    )
+    mesh = tables["mesh"]
+    if isinstance(scene.geometry, MeshFile):
+        del mesh["along"], mesh["across"], mesh["element"]
+    if isinstance(scene.geometry, MeshFile) or scene.dimension == 2:
+        del mesh["deep"]
+    for boundary in tables["boundary"].values():
+        if scene.dimension == 2 and isinstance(boundary.get("traction"), dict):
+            boundary["traction"].pop("z", None)
+    if not tables["boundary"]:
+        del tables["boundary"]
+    return tables
+
+
+def write_resolved(scene: "Scene", path: str | Path) -> None:
+    """Write the resolved scene as TOML."""
+    Path(path).write_text(tomli_w.dumps(resolved(scene)), encoding="utf-8")
+
+
+def digest(scene: "Scene") -> str:
+    """Return a SHA-256 of all that changes the answer: no title, a mesh file by its content."""
+    tables = resolved(scene)
+    del tables["scene"]["title"]
+    if isinstance(scene.geometry, MeshFile):
+        content = scene.geometry.path.read_bytes()
+        tables["geometry"]["path"] = hashlib.sha256(content).hexdigest()
+    text = json.dumps(tables, sort_keys=True, separators=(",", ":"))
+    return hashlib.sha256(text.encode()).hexdigest()
