@@ -1,0 +1,39 @@
+# make run      install what is missing, then compute jobs/case1.toml
+# make test     install what is missing, then run the fast tests (those with mpirun included)
+# make test-all all tests; make lint: ruff and mypy; make bench: assembly against MUMPS
+SHELL := /bin/bash
+PYTHON := .venv/bin/python
+
+# One BLAS thread per rank: more of them only slow each other (and MUMPS) down.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+export OMPI_MCA_rmaps_base_oversubscribe := 1
+ifeq ($(shell id -u),0)
+export OMPI_ALLOW_RUN_AS_ROOT := 1
+export OMPI_ALLOW_RUN_AS_ROOT_CONFIRM := 1
+endif
+
+.PHONY: run test test-all lint bench install clean
+
+run: install
+	@.venv/bin/porolub run jobs/case1.toml
+
+test: install
+	@$(PYTHON) -m pytest -m "not slow"
+
+test-all: install
+	@$(PYTHON) -m pytest
+
+lint: install
+	@$(PYTHON) -m ruff check .
+	@$(PYTHON) -m mypy
+
+bench: install
+	@$(PYTHON) tests/bench/assembly.py
+
+install:
+	@bash .ci/install.sh
+
+clean:
+	rm -rf .venv build *.egg-info porolub/fem/_kernels*.so
+	find porolub tests -name __pycache__ -prune -exec rm -rf {} +
