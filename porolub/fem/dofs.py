@@ -59,7 +59,7 @@ class Dofs:
         self.owned = np.concatenate(owned_parts) if owned_parts else np.zeros(0, bool)
         self.count_owned = int(self.owned.sum())
         self.global_numbers = self._number(comm)
-        self.size = comm.tompi4py().allreduce(self.count_owned)
+        self.size = comm.allreduce(self.count_owned)
         self._scatter: PETSc.Scatter | None = None
 
     def _field_nodes(self, f: Field) -> NDArray[np.int64]:
@@ -75,14 +75,14 @@ class Dofs:
     def _number(self, comm: PETSc.Comm) -> NDArray[np.int32]:
         """Global number of every local dof: owners number, ghosts are told."""
         mesh = self.mesh
-        first = comm.tompi4py().exscan(self.count_owned) or 0
+        first = comm.exscan(self.count_owned) or 0
         numbers = np.full(self.size_local, -1, dtype=np.int64)
         numbers[self.owned] = first + np.arange(self.count_owned)
         for f in self.fields.values():
             dofs = np.arange(self.range[f.name].start, self.range[f.name].stop)
             if f.degree == 0:
                 root = comm.size - 1
-                numbers[dofs] = comm.tompi4py().bcast(numbers[dofs], root=root)
+                numbers[dofs] = comm.bcast(numbers[dofs], root=root)
                 continue
             nodes = self.nodes[f.name]
             numbers_of_nodes = np.zeros(len(mesh.coordinates))
@@ -167,7 +167,7 @@ class Dofs:
 
     def counts(self) -> dict[str, int]:
         """Global number of unknowns of each field."""
-        comm = self.mesh.comm.tompi4py()
+        comm = self.mesh.comm
         return {name: comm.allreduce(int(self.owned[r].sum())) for name, r in self.range.items()}
 
     def destroy(self) -> None:

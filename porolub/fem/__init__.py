@@ -1,0 +1,1 @@
+"""Finite elements: reference elements, quadrature, integration domains, dofs, assembly."""

@@ -1,0 +1,1 @@
+"""From terms to a solution: system, constraints, Newton, continuation, outcome."""

@@ -1,0 +1,53 @@
+"""Rotation carries volume change through the contact: int a (v . grad J) q, conservatively.
+
+Integrated by parts (v is divergence free and tangential to the arcs):
+- int a (J - 1) v . grad q + int_ends a (J - 1) (v . n) q.  Fluid mass then closes to solver
+tolerance.  ``entering="fresh"``: material enters undeformed, J = 1 where v . n < 0.
+de Boer et al. 2020, Eqs. 5-6.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from porolub.fem.dofs import Field
+from porolub.fem.points import GRAD, VALUE, Integrand, Points
+from porolub.terms.operation import Operation
+from porolub.terms.term import Part
+
+
+@dataclass(frozen=True)
+class Carry:
+    biot: float
+    operation: Operation
+    ends: tuple[str, ...]
+    fresh: bool
+    name: str = "carry"
+
+    def fields(self) -> list[Field]:
+        return []
+
+    def reads(self) -> list[str]:
+        return ["u", "p"]
+
+    def parts(self) -> list[Part]:
+        blocks = [("p", "u")]
+        ends = [Part(f"facets:{end}", self.end_flux, blocks) for end in self.ends]
+        return [Part("cells", self.transport, blocks), *ends]
+
+    def transport(self, at: Points, out: Integrand) -> None:
+        a, v, d = self.biot, self.operation.body_velocity(at.position), at.deformation
+        out.residual("p", GRAD, -a * (d.J - 1.0)[..., None] * v)
+        if out.wants_jacobian:
+            out.jacobian("p", GRAD, "u", GRAD, -a * v[..., :, None, None] * d.cof[..., None, :, :])
+
+    def end_flux(self, at: Points, out: Integrand) -> None:
+        a, d = self.biot, at.deformation
+        vn = np.einsum("...d,...d->...", self.operation.body_velocity(at.position), at.normal)
+        if self.fresh:
+            vn = np.maximum(vn, 0.0)
+        out.residual("p", VALUE, a * (d.J - 1.0) * vn)
+        if out.wants_jacobian:
+            out.jacobian("p", VALUE, "u", GRAD, a * vn[..., None, None] * d.cof)

@@ -1,0 +1,66 @@
+"""Thin Reynolds film as a surface operator on the trace of p (de Boer et al. 2020, Eqs. 7-8).
+
+int [h^3/(12 eta) grad_s p . grad_s q - h/2 U . grad_s q] ds, h = max(0, gap).  Added to the fluid
+mass of the pores the exchange V drops out.  Where h = 0 the film conducts nothing and the
+surface is sealed by itself.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from porolub.fem.dofs import Field
+from porolub.fem.points import GRAD, VALUE, Integrand, Points
+from porolub.laws.lubricant import Newtonian, film_thickness
+from porolub.terms.operation import Operation
+from porolub.terms.plane import Plane
+from porolub.terms.term import Part
+
+
+@dataclass(frozen=True)
+class Film:
+    law: Newtonian
+    plane: Plane
+    operation: Operation
+    boundary: str
+    displacement: bool
+    approach: bool
+    degree: int
+    alone: bool  # no pores: the film brings its own pressure, on the surface only
+    name: str = "film"
+
+    def fields(self) -> list[Field]:
+        return [Field("p", 1, self.degree, support=self.boundary)] if self.alone else []
+
+    def reads(self) -> list[str]:
+        return [] if self.alone else ["p"]
+
+    def parts(self) -> list[Part]:
+        blocks = [("p", "p"), *self.plane.blocks("p", self.displacement, self.approach)]
+        return [Part(f"facets:{self.boundary}", self.flow, blocks)]
+
+    def flux(self, at: Points) -> np.ndarray:
+        """Volume flux in the film per width, (ne, nq, dim), tangential."""
+        h, _ = film_thickness(self.plane.gap(at))
+        U = self.operation.entrainment(at.position, at.normal)
+        g = self.surface_gradient(at)
+        return -self.law.conductance(h)[..., None] * g + h[..., None] / 2.0 * U
+
+    @staticmethod
+    def surface_gradient(at: Points) -> np.ndarray:
+        g, n = at.grad("p"), at.normal
+        return g - np.einsum("...d,...d->...", g, n)[..., None] * n
+
+    def flow(self, at: Points, out: Integrand) -> None:
+        h, dh = film_thickness(self.plane.gap(at))
+        U = self.operation.entrainment(at.position, at.normal)
+        g, n = self.surface_gradient(at), at.normal
+        k, dk = self.law.conductance(h), self.law.conductance_derivative(h)
+        out.residual("p", GRAD, k[..., None] * g - h[..., None] / 2.0 * U)
+        if out.wants_jacobian:
+            tangential = np.eye(at.dim) - n[..., :, None] * n[..., None, :]
+            out.jacobian("p", GRAD, "p", GRAD, k[..., None, None] * tangential)
+            by_gap = (dk[..., None] * g - U / 2.0) * dh[..., None]
+            self.plane.chain(at, out, "p", GRAD, by_gap)

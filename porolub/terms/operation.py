@@ -1,0 +1,57 @@
+"""What is applied right now: speed, force or approach, and the velocities that follow.
+
+The one mutable thing terms share: continuation and load histories change it between solves.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass
+class Operation:
+    """Scaled operating point.
+
+    kind: ``rest``, ``rotation`` (body turns about ``centre``, speed in rad per time) or
+    ``sliding`` (plane moves along ``direction``, speed in length per time).
+    force: load to balance, or None when ``approach`` is prescribed.
+    """
+
+    kind: str = "rest"
+    speed: float = 0.0
+    centre: tuple[float, ...] = (0.0, 0.0)
+    direction: tuple[float, ...] = (1.0, 0.0)
+    force: float | None = None
+    approach: float = 0.0
+
+    def body_velocity(self, X: Array) -> Array:
+        """v = Omega e_z x (X - x0), (..., dim); zero unless the body rotates."""
+        v = np.zeros_like(X)
+        if self.kind == "rotation":
+            v[..., 0] = -self.speed * (X[..., 1] - self.centre[1])
+            v[..., 1] = self.speed * (X[..., 0] - self.centre[0])
+        return v
+
+    def plane_velocity(self, X: Array) -> Array:
+        """Velocity of the rigid plane, (..., dim)."""
+        U = np.zeros_like(X)
+        if self.kind == "sliding":
+            U[...] = self.speed * np.asarray(self.direction)
+        return U
+
+    def entrainment(self, X: Array, normal: Array) -> Array:
+        """Sum velocity of the two surfaces along the surface: the film carries half of it."""
+        v = self.body_velocity(X) + self.plane_velocity(X)
+        return v - np.einsum("...d,...d->...", v, normal)[..., None] * normal
+
+    def sliding_direction(self, X: Array, normal: Array) -> Array:
+        """Unit vector of the body's motion relative to the plane (zero at rest)."""
+        w = self.body_velocity(X) - self.plane_velocity(X)
+        w = w - np.einsum("...d,...d->...", w, normal)[..., None] * normal
+        size = np.linalg.norm(w, axis=-1, keepdims=True)
+        return np.where(size > 0, w / np.where(size > 0, size, 1.0), 0.0)

@@ -1,0 +1,55 @@
+"""Biot coupling and Darcy flow, in the frame the scene chooses.
+
+Momentum: - int a p B(F) : grad w, with B = cof F (spatial) or I (material).  Integrated by parts
+this is the body force a grad p together with a total boundary traction a p B N, so the natural
+condition on a free boundary is zero *total* traction.
+Fluid mass: int K grad p . grad q, K = (kappa/eta) J F^-1 F^-T (spatial) or (kappa/eta) I.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from porolub.fem.dofs import Field
+from porolub.fem.points import GRAD, VALUE, Integrand, Points
+from porolub.terms.term import Part
+
+
+@dataclass(frozen=True)
+class Pores:
+    biot: float
+    mobility: float  # kappa / eta
+    spatial: bool
+    degree: int
+    name: str = "pores"
+
+    def fields(self) -> list[Field]:
+        return [Field("p", 1, self.degree, differential=True)]
+
+    def reads(self) -> list[str]:
+        return ["u"]
+
+    def parts(self) -> list[Part]:
+        darcy = [("p", "p")] + ([("p", "u")] if self.spatial else [])
+        coupling = [("u", "p")] + ([("u", "u")] if self.spatial else [])
+        return [Part("cells", self.momentum, coupling), Part("cells", self.mass, darcy)]
+
+    def momentum(self, at: Points, out: Integrand) -> None:
+        a, p, d = self.biot, at.value("p"), at.deformation
+        B = d.cof if self.spatial else at.constant(np.eye(at.dim))
+        out.residual("u", GRAD, -a * p[..., None, None] * B)
+        if out.wants_jacobian:
+            out.jacobian("u", GRAD, "p", VALUE, -a * B)
+            if self.spatial and d.finite:
+                out.jacobian("u", GRAD, "u", GRAD, -a * p[..., None, None, None, None] * d.dcof)
+
+    def mass(self, at: Points, out: Integrand) -> None:
+        k, g, d = self.mobility, at.grad("p"), at.deformation
+        K = k * d.mobility_tensor if self.spatial else at.constant(k * np.eye(at.dim))
+        out.residual("p", GRAD, np.einsum("...jk,...k->...j", K, g))
+        if out.wants_jacobian:
+            out.jacobian("p", GRAD, "p", GRAD, K)
+            if self.spatial and d.finite:
+                out.jacobian("p", GRAD, "u", GRAD, k * d.mobility_flux_derivative(g))
