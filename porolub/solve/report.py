@@ -1,0 +1,97 @@
+"""What a solve hands to the outside: plain arrays and numbers in SI, gathered on rank 0.
+
+No PETSc here, so writers and plots can be built and tested on these alone.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class FieldData:
+    """Fields on all nodes in partition-independent order (rank 0; SI).
+
+    nodes: (n, dim) reference positions, m; cells: (nc, nn) node numbers, VTK order;
+    cell_type: quad | triangle | hex | tet, degree 1 or 2 (degree 2: quad9, triangle6, hex27, tet10)
+    displacement: (n, dim) m; pressure: (n,) Pa or None; jacobian, von_mises: (n,);
+    flux: (n, dim) Darcy flux in m/s or None.  A dry scene has no pressure and no flux; a rigid
+    one has zero displacement and no von Mises stress.
+    """
+
+    nodes: Array
+    cells: NDArray[np.int64]
+    cell_type: str
+    degree: int
+    displacement: Array
+    pressure: Array | None
+    jacobian: Array
+    von_mises: Array
+    flux: Array | None
+
+
+@dataclass(frozen=True)
+class SurfaceData:
+    """Profiles along the lubricated surface, sorted by arc position s (rank 0; SI).
+
+    s from the middle (m), x (m), p pore pressure (Pa), p_c contact pressure (Pa), h film
+    thickness (m), Q film flux per width (m^2/s), V flow out of the layer (m/s), at the
+    displacement nodes; arrays of zeros where the scene lacks the effect.
+    """
+
+    s: Array
+    x: Array
+    p: Array
+    p_c: Array
+    h: Array
+    Q: Array
+    V: Array
+
+
+@dataclass(frozen=True)
+class StepRecord:
+    """One accepted step of the history: time (s; 0 in a steady run), continuation fraction,
+    and every scalar of the summary that makes sense per step."""
+
+    time: float
+    values: dict[str, float]
+
+
+@dataclass(frozen=True)
+class NewtonRecord:
+    """One Newton iteration as shown to the user.
+
+    stage: name of the continuation stage; fraction: of the target reached by this stage;
+    residuals, updates: scaled norm by field; damping: accepted step length; load: current total
+    load / target; elapsed: s since the start
+    """
+
+    stage: str
+    fraction: float
+    iteration: int
+    residuals: dict[str, float]
+    updates: dict[str, float]
+    damping: float
+    load: float
+    elapsed: float
+
+
+@dataclass(frozen=True)
+class Report:
+    """All results of a run.
+
+    summary: the keys of summary.json (contract); surface is None without a lubricated surface;
+    newton: every iteration of the solve; history: accepted steps.
+    """
+
+    summary: dict[str, Any]
+    fields: FieldData
+    surface: SurfaceData | None
+    newton: list[NewtonRecord] = field(default_factory=list)
+    history: list[StepRecord] = field(default_factory=list)
