@@ -1,8 +1,9 @@
 """The shape of the layer and the names of its boundaries.
 
-A sector is the part of an annulus about the origin within +- half_angle; ``lubricated`` is its
-outer arc, ``bone`` the inner one, ``inlet`` and ``outlet`` the two radial ends. A barrel is a
-sector with an axial width and, if wanted, a crown. A block is a rectangle or a cuboid.
+A sector is the part of an annulus within +- half_angle of the downward direction; ``lubricated``
+is its outer arc, lowest in the middle and facing the rigid plane below, ``bone`` the inner one,
+``inlet`` and ``outlet`` the radial ends. A barrel is a sector with an axial width and, if wanted,
+a crown. A block is a rectangle or a cuboid with the rigid plane above.
 """
 
 import math
@@ -127,7 +128,8 @@ def _components(value: Any) -> Any:
 class MeshFile(Shape):
     """A user's mesh; ``path`` is relative to the scene file. Boundaries as named in the mesh.
 
-    ``plane_normal`` points from the layer to the rigid plane (components along the axes).
+    ``plane_normal`` points from the layer to the rigid plane (components along the axes);
+    None stands for downwards, -y.
     """
 
     dimensions = (2, 3)

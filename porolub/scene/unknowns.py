@@ -1,37 +1,48 @@
 """How many unknowns a scene costs, counted before anything is built."""
 
+from collections.abc import Callable
 from math import prod
 
 from porolub.scene.geometry import MeshFile
+from porolub.scene.mesh_file import count_file_nodes
 from porolub.scene.scene import Scene
 
 
 def estimate_unknowns(scene: Scene) -> dict[str, int]:
-    """Return the number of unknowns per field and in total; empty for a mesh file.
+    """Return the number of unknowns per field and in total.
 
     Fields that the scene does not have are left out. Nodes with prescribed values are counted:
-    they stay in the system. Displacement nodes of an along x across mesh of degree d are
-    (d along + 1)(d across + 1); contact pressure sits on those of the lubricated surface. Pore
-    pressure has its own degree; without pores the film pressure sits on the surface only.
+    they stay in the system. Contact pressure sits on the displacement nodes of the lubricated
+    surface; pore pressure has its own degree; without pores the film pressure sits on the surface
+    only. Raises SceneError if a mesh file cannot be read.
     """
-    if isinstance(scene.geometry, MeshFile):
-        return {}
     mesh = scene.mesh
-    cells = [mesh.along, mesh.across] + ([mesh.deep] if scene.dimension == 3 else [])
-    surface = [mesh.along] + ([mesh.deep] if scene.dimension == 3 else [])
-
-    def nodes(counts: list[int], degree: int) -> int:
-        return prod(degree * n + 1 for n in counts)
-
+    layer, surface = _node_counts(scene)
     count = {}
     if scene.solid is not None:
-        count["displacement"] = scene.dimension * nodes(cells, mesh.degree)
+        count["displacement"] = scene.dimension * layer(mesh.degree)
     if scene.pores is not None:
-        count["pore_pressure"] = nodes(cells, mesh.pressure_degree)
+        count["pore_pressure"] = layer(mesh.pressure_degree)
     elif scene.film is not None:
-        count["film_pressure"] = nodes(surface, mesh.pressure_degree)
+        count["film_pressure"] = surface(mesh.pressure_degree)
     if scene.contact is not None:
-        count["contact_pressure"] = nodes(surface, mesh.degree)
+        count["contact_pressure"] = surface(mesh.degree)
     if scene.load is not None and scene.load.force is not None:
         count["approach"] = 1
     return count | {"total": sum(count.values())}
+
+
+def _node_counts(scene: Scene) -> tuple[Callable[[int], int], Callable[[int], int]]:
+    """Return the numbers of nodes in the layer and on the lubricated surface, by degree.
+
+    A structured mesh of n x m elements of degree d has (d n + 1)(d m + 1) nodes.
+    """
+    shape, mesh = scene.geometry, scene.mesh
+    if isinstance(shape, MeshFile):
+        nodes = count_file_nodes(shape.path, scene.dimension, shape.lubricated)
+        return nodes.layer.__getitem__, nodes.surface.__getitem__
+    along = [mesh.along] + ([mesh.deep] if scene.dimension == 3 else [])
+    return (
+        lambda degree: prod(degree * n + 1 for n in (*along, mesh.across)),
+        lambda degree: prod(degree * n + 1 for n in along),
+    )

@@ -1,0 +1,195 @@
+"""The command line. Exit codes: 0 done, 2 bad input, 3 the solve failed, 130 interrupted."""
+
+import os
+
+# Threads of the linear algebra library would fight with the MPI ranks; it reads these at import.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import sys
+import time
+import traceback
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+from rich.console import Console
+from typer.core import TyperGroup
+
+import porolub
+from porolub.errors import PorolubError, SceneError
+
+SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
+Overrides = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="SECTION.KEY=VALUE",
+        help="Change the scene, as often as you like: load.force='3 kN/m', mesh.along=600, "
+        "solid.base=bonded. film=none (or film=false) takes a whole section away, load.force= a "
+        "single key; load={approach='50 um'} replaces a section.",
+    ),
+]
+
+
+def rank_and_size() -> tuple[int, int]:
+    """Return this process's MPI rank and their number, from the launcher, without starting MPI."""
+    for rank, size in (
+        ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"),
+        ("PMI_RANK", "PMI_SIZE"),
+    ):
+        if rank in os.environ and size in os.environ:
+            return int(os.environ[rank]), int(os.environ[size])
+    return 0, 1
+
+
+def _say_error(message: str) -> None:
+    if rank_and_size()[0] == 0:
+        for line in message.splitlines():
+            print(f"porolub: {line}", file=sys.stderr, flush=True)
+
+
+def _leave_together(code: int) -> None:
+    """Let all ranks get here before one exits: mpirun kills the others, message and all, then."""
+    if rank_and_size()[1] == 1:
+        return
+    from mpi4py import MPI
+
+    request = MPI.COMM_WORLD.Ibarrier()
+    deadline = time.monotonic() + 10.0
+    while not request.Test():
+        if time.monotonic() > deadline:  # the error is not on all ranks: end the others
+            MPI.COMM_WORLD.Abort(code)
+        time.sleep(0.01)
+
+
+class _Commands(TyperGroup):
+    """Ends every command that meets a PorolubError with one line and its exit code."""
+
+    def invoke(self, ctx: Any) -> Any:
+        try:
+            return super().invoke(ctx)
+        except PorolubError as error:
+            _say_error(str(error))
+            _leave_together(error.exit_code)
+            raise typer.Exit(error.exit_code) from error
+        except KeyboardInterrupt as error:
+            _say_error("interrupted.")
+            _leave_together(130)
+            raise typer.Exit(130) from error
+        except (typer.Exit, typer.Abort, typer.TyperException):
+            raise
+        except Exception:
+            if rank_and_size()[1] > 1:  # a defect on one rank must not leave the others waiting
+                traceback.print_exc()
+                _leave_together(1)
+            raise
+
+
+app = typer.Typer(
+    name="porolub",
+    cls=_Commands,
+    help="Porohyperelastic lubrication: scene file in, coupled solution out.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+
+
+@app.command()
+def run(
+    scene: SceneFile,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out",
+            metavar="DIR",
+            help="Output directory; if not given, results/<scene file name>.",
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    petsc: Annotated[
+        str, typer.Option("--petsc", metavar="OPTIONS", help="Options handed to PETSc.")
+    ] = "",
+    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no result table.")] = False,
+) -> None:
+    """Compute a scene and write the results."""
+    from porolub.scene import load_scene
+
+    checked = load_scene(scene, overrides or ())
+    if checked.time is not None:
+        raise SceneError(
+            "transient scenes are not supported by this version: remove [time] to compute the "
+            "steady state (--set time=none)."
+        )
+    from porolub.run import run_scene
+
+    out_dir = out if out is not None else Path("results") / scene.stem
+    raise typer.Exit(run_scene(checked, out_dir, petsc, quiet, scene))
+
+
+@app.command()
+def check(scene: SceneFile, overrides: Overrides = None) -> None:
+    """Validate a scene without computing; show its effects, unknowns and conventions."""
+    from porolub.scene import load_scene
+    from porolub.scene.report import report
+
+    checked = load_scene(scene, overrides or ())
+    if rank_and_size()[0] == 0:
+        Console().print(report(checked))
+
+
+@app.command()
+def plot(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Output directory of a run.")],
+) -> None:
+    """Draw the figures of a finished run."""
+    if not directory.is_dir():
+        raise SceneError(f"{directory}: there is no such directory.")
+    from porolub.io.plots import plot_directory
+
+    for path in plot_directory(directory):
+        print(path)
+
+
+@app.command()
+def info() -> None:
+    """Show the versions of all that takes part."""
+    if rank_and_size()[0] == 0:
+        for name, version in versions().items():
+            print(f"{name:<10} {version}")
+
+
+def versions() -> dict[str, str]:
+    """Return the versions of Python, porolub and the libraries; ``missing`` if not importable."""
+
+    def petsc() -> str:
+        from petsc4py import PETSc
+
+        return ".".join(str(part) for part in PETSc.Sys.getVersion())
+
+    def module(name: str) -> str:
+        return str(__import__(name).__version__)
+
+    found = {"python": sys.version.split()[0], "porolub": porolub.__version__}
+    for name in ("numpy", "petsc", "petsc4py", "mpi4py", "gmsh", "h5py", "meshio"):
+        try:
+            found[name] = petsc() if name == "petsc" else module(name)
+        except ImportError:
+            found[name] = "missing"
+    return found
+
+
+def main() -> None:
+    """Entry point of ``porolub``: one clean line for an error, never a traceback for bad input."""
+    try:
+        code = app(standalone_mode=False)
+    except typer.TyperException as error:  # unknown options and the like
+        _say_error(error.format_message())
+        _leave_together(error.exit_code)
+        code = error.exit_code
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    main()

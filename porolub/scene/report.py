@@ -1,0 +1,180 @@
+"""What ``porolub check`` shows: the scene as a tribologist reads it, and what it will cost."""
+
+import math
+
+from rich.console import Group, RenderableType
+from rich.table import Table
+from rich.text import Text
+
+from porolub.scene.derived import derived
+from porolub.scene.effects import effects
+from porolub.scene.geometry import MeshFile
+from porolub.scene.scene import Scene
+from porolub.scene.unknowns import estimate_unknowns
+
+_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
+
+_FIELDS = {
+    "displacement": "layer",
+    "pore_pressure": "layer, surface included",
+    "film_pressure": "lubricated surface",
+    "contact_pressure": "lubricated surface",
+    "approach": "the rigid plane",
+}
+
+_READINGS = {
+    "surface_traction": {
+        "balanced": "skeleton carries p_c + (1 - a) p: the layer feels the whole load",
+        "paper": "skeleton carries p_c only, as printed",
+    },
+    "frame": {
+        "spatial": "grad p and Darcy flow in the deformed layer",
+        "material": "grad p and Darcy flow in the undeformed layer, as printed",
+    },
+    "entering": {
+        "computed": "material enters with the J that is computed there",
+        "fresh": "material enters undeformed, J = 1",
+    },
+}
+
+
+def report(scene: Scene) -> RenderableType:
+    """Return the report on a checked scene, to be printed with rich."""
+    cost = estimate_unknowns(scene)
+    parts: list[RenderableType] = [
+        Text(scene.title, style="bold"),
+        Text(_summary(scene)),
+        "",
+        _effects_table(scene, cost),
+        "",
+        _unknowns_table(scene, cost),
+        "",
+        _conventions_table(scene),
+    ]
+    notes = list(_notes(scene))
+    return Group(*parts, *([""] if notes else []), *notes)
+
+
+def readable(value: float, unit: str) -> str:
+    """Write an SI value with a prefix, for instance ``58.2 um``."""
+    size = abs(value)
+    factor, prefix = next((p for p in _PREFIXES if size >= p[0] * 0.9999999), (1.0, ""))
+    return f"{value / factor:.4g} {prefix}{unit}"
+
+
+def _summary(scene: Scene) -> str:
+    shape = scene.geometry
+    words = ["plane strain" if scene.dimension == 2 else "three-dimensional", shape.shape]
+    sizes = [
+        f"{key.replace('_', ' ')} {readable(getattr(shape, key), 'm')}"
+        for key in ("outer_radius", "width", "thickness", "depth", "crown_radius")
+        if getattr(shape, key, None) is not None
+    ]
+    if hasattr(shape, "half_angle"):
+        sizes.append(f"half angle {math.degrees(shape.half_angle):.4g} deg")
+    if isinstance(shape, MeshFile):
+        sizes.append(str(shape.path))
+    return f"{' '.join(words)}: {', '.join(sizes)}"
+
+
+def _effects_table(scene: Scene, cost: dict[str, int]) -> Table:
+    table = Table(title="Effects", title_justify="left")
+    table.add_column("effect")
+    table.add_column("on")
+    table.add_column("in this scene")
+    table.add_column("what it adds")
+    on = effects(scene)
+    for name, setting, adds in _rows(scene, cost):
+        if name == "squeeze" and scene.time is None:
+            continue  # it needs time
+        if name in on:
+            table.add_row(name, "[green]yes[/]", setting, adds)
+        else:
+            table.add_row(name, "no", "", "nothing", style="dim")
+    return table
+
+
+def _rows(scene: Scene, cost: dict[str, int]) -> list[tuple[str, str, str]]:
+    """Return effect, its setting and its cost; motion and load only in the form they have."""
+    solid, pores, film, contact = scene.solid, scene.pores, scene.film, scene.contact
+
+    def unknowns(field: str) -> str:
+        return f"{cost.get(field, 0):,} unknowns"
+
+    stiffness = ""
+    if solid is not None:
+        g, k = readable(solid.shear_modulus, "Pa"), readable(solid.bulk_modulus, "Pa")
+        stiffness = f"{solid.law}, G {g}, K {k}, {solid.base} base"
+    film_cost = "acts on the pore pressure at the surface" if pores else unknowns("film_pressure")
+    load_kind = "approach" if scene.load is not None and scene.load.approach is not None else "load"
+    load_unit = "m" if load_kind == "approach" else "N/m" if scene.dimension == 2 else "N"
+    load = readable(scene.load.at(0.0), load_unit) if scene.load else ""
+    motion_kind = scene.motion.kind if scene.motion else "rotation"
+    speed_unit = "rad/s" if motion_kind == "rotation" else "m/s"
+    speed = f"{scene.motion.at(0.0):.4g} {speed_unit}" if scene.motion else ""
+    return [
+        ("solid", stiffness, f"{unknowns('displacement')}; stiffness block"),
+        (
+            "pores",
+            f"a {pores.biot:g}, kappa {pores.permeability:.4g} m^2" if pores else "",
+            f"{unknowns('pore_pressure')}; flow block, coupling to the solid",
+        ),
+        ("carry", "v . grad J", "coupling pressure to displacement; stabilised"),
+        ("film", f"eta {readable(film.viscosity, 'Pa s')}" if film else "", film_cost),
+        ("squeeze", "dh/dt", "coupling in time"),
+        (
+            "contact",
+            f"friction {contact.friction:g}" if contact else "",
+            f"{unknowns('contact_pressure')}; one condition a node",
+        ),
+        ("friction_traction", "shears the layer", "unsymmetric coupling"),
+        (motion_kind, speed, "nothing by itself"),
+        (load_kind, load, "1 unknown, the approach" if load_kind == "load" else "nothing"),
+        ("time", f"to {scene.time.end:g} s" if scene.time else "", "many steps instead of one"),
+    ]
+
+
+def _unknowns_table(scene: Scene, cost: dict[str, int]) -> Table:
+    table = Table(title="Unknowns", title_justify="left", show_footer=True)
+    table.add_column("field", footer="total")
+    table.add_column("where")
+    table.add_column("unknowns", justify="right", footer=f"{cost['total']:,}")
+    for field, count in cost.items():
+        if field != "total":
+            table.add_row(field, _FIELDS[field], f"{count:,}")
+    return table
+
+
+def _conventions_table(scene: Scene) -> Table:
+    table = Table(title="Conventions in force", title_justify="left")
+    table.add_column("convention")
+    table.add_column("reading")
+    table.add_column("meaning")
+    for key, meanings in _READINGS.items():
+        reading = getattr(scene.conventions, key)
+        table.add_row(key, reading, meanings[reading])
+    return table
+
+
+def _notes(scene: Scene) -> list[str]:
+    d, notes = derived(scene), []
+    if d.surface_speed is not None:
+        notes.append(f"The surfaces slide past each other at {d.surface_speed:.3g} m/s.")
+    if d.consolidation is not None and d.confined_modulus is not None:
+        notes.append(
+            f"Stiffness in confined compression {readable(d.confined_modulus, 'Pa')}, "
+            f"consolidation coefficient {d.consolidation:.3g} m^2/s."
+        )
+    if d.peclet is not None and d.outlet_layer is not None:
+        notes.append(
+            f"Peclet number over the thickness {d.peclet:.3g}; "
+            f"outlet boundary layer {readable(d.outlet_layer, 'm')}."
+        )
+        length = d.element_length
+        if length is not None and scene.mesh.grading == "none" and length > d.outlet_layer:
+            notes.append(
+                f"Elements along the surface are {readable(length, 'm')} long, "
+                f"{length / d.outlet_layer:.2g} times that layer: expect the outlet to be "
+                'smoothed, or set mesh.grading = "contact".'
+            )
+    return notes
