@@ -1,13 +1,6 @@
 """What all tests share: one BLAS thread, and `run_mpi` to run code under mpirun."""
 
 import os
-
-for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "OMPI_MCA_rmaps_base_oversubscribe"):
-    os.environ[variable] = "1"  # before NumPy is imported
-os.environ.setdefault("MPLBACKEND", "Agg")
-if os.geteuid() == 0:
-    os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
-
 import signal
 import subprocess
 import sys
@@ -16,6 +9,12 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+
+for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "OMPI_MCA_rmaps_base_oversubscribe"):
+    os.environ[variable] = "1"  # before NumPy is imported
+os.environ.setdefault("MPLBACKEND", "Agg")
+if os.geteuid() == 0:
+    os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
 
 ROOT = Path(__file__).resolve().parent.parent
 RunMPI = Callable[..., str]

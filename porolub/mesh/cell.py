@@ -47,8 +47,9 @@ class Cell:
         for number, face in enumerate(self.faces):
             row = list(face)
             if degree == 2:
-                ring = [(face[0], face[1])] if self.dim == 2 else zip(face, face[1:] + face[:1])
-                row += [self.vertices + pairs.index(frozenset(edge)) for edge in ring]
+                ring = face[1:] + face[:1] if self.dim == 3 else face[1:]
+                sides = zip(face, ring, strict=False)  # in 2D one edge: the face itself
+                row += [self.vertices + pairs.index(frozenset(side)) for side in sides]
                 if self.dim == 3 and self.tensor:
                     row.append(self.vertices + len(self.edges) + number)
             rows.append(row)

@@ -26,10 +26,10 @@ def _corners(block: Index) -> Index:
 
 def _sides(block: Index) -> list[Index]:
     """Facets of the sides: first axis low, high, second axis low, high, ..."""
-    sides = []
+    sides: list[Index] = []
     for axis in range(block.ndim):
         for end in (0, -1):
-            face = block.take(end, axis=axis)
+            face: Index = np.asarray(block.take(end, axis=axis))
             if face.ndim == 1:
                 sides.append(np.stack([face[:-1], face[1:]], axis=1))
             else:

@@ -54,7 +54,7 @@ class Mesh:
     """
 
     dm: PETSc.DMPlex
-    comm: MPI.Comm
+    comm: MPI.Intracomm
     degree: int
     cell: Cell
     cells: Index

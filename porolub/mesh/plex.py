@@ -10,7 +10,7 @@ from petsc4py import PETSc
 Index = NDArray[np.int64]
 
 
-def read(path: str, comm: MPI.Comm) -> PETSc.DMPlex:
+def read(path: str, comm: MPI.Intracomm) -> PETSc.DMPlex:
     """The mesh of a .msh file, all of it on rank 0 (only rank 0 needs to see the file)."""
     dm = PETSc.DMPlex().createFromFile(path, comm=comm)
     dm.setBasicAdjacency(useCone=True, useClosure=True)
@@ -40,13 +40,14 @@ def distribute(dm: PETSc.DMPlex, strips: bool) -> PETSc.SF | None:
 def from_original(sf: PETSc.SF | None, original: NDArray, npoints: int) -> NDArray:
     """Values per point of the undistributed mesh, brought to each rank's points.
 
-    original: (points of the undistributed mesh, ...) on rank 0, any rows elsewhere;
-    returns (npoints, ...).
+    original: (points of the undistributed mesh, ...) on rank 0, no rows elsewhere, of float64
+    or int64; returns (npoints, ...).
     """
     if sf is None:
         return original
     width = int(np.prod(original.shape[1:], dtype=int))
-    unit = MPI._typedict[original.dtype.char].Create_contiguous(width).Commit()
+    scalar = MPI.DOUBLE if original.dtype == np.float64 else MPI.INT64_T
+    unit = scalar.Create_contiguous(width).Commit()
     local = np.zeros((npoints, *original.shape[1:]), dtype=original.dtype)
     sf.bcastBegin(unit, original, local, MPI.REPLACE)
     sf.bcastEnd(unit, original, local, MPI.REPLACE)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porolub.errors import SceneError
-from porolub.mesh.cell import CELLS, Cell
+from porolub.mesh.cell import Cell
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
@@ -74,17 +74,25 @@ def match_rows(table: Index, rows: Index) -> Index:
 
 
 def check_boundaries(raw: RawMesh) -> None:
-    """Raises SceneError unless every boundary facet is an outer face of exactly one cell."""
+    """Raises SceneError unless every boundary facet is outside and in one boundary only."""
     faces = np.vstack([raw.cells[:, list(face)] for face in raw.cell.faces])
     distinct, times = np.unique(face_keys(faces), axis=0, return_counts=True)
     outer = distinct[times == 1]
-    for name, facets in raw.boundaries.items():
-        inside = int((match_rows(outer, face_keys(facets)) < 0).sum())
+    owner = np.full(len(outer), -1)
+    for number, (name, facets) in enumerate(raw.boundaries.items()):
+        if facets.shape[1] != outer.shape[1]:
+            raise SceneError(f"boundary '{name}' of the mesh does not consist of its cells' faces.")
+        place = match_rows(outer, face_keys(facets))
+        inside = int((place < 0).sum())
         if inside:
             raise SceneError(
                 f"boundary '{name}' of the mesh has {inside} of {len(facets)} facets that are "
                 "not outer faces of its cells: a boundary must lie on the outside."
             )
-
-
-__all__ = ["CELLS", "RawMesh", "check_boundaries", "face_keys", "match_rows", "oriented"]
+        taken = owner[place].max(initial=-1)
+        if taken >= 0:
+            raise SceneError(
+                f"boundaries '{list(raw.boundaries)[taken]}' and '{name}' of the mesh share "
+                "facets: each facet must belong to one boundary only."
+            )
+        owner[place] = number
