@@ -19,6 +19,8 @@ from typer.core import TyperGroup
 import porolub
 from porolub.errors import PorolubError, SceneError
 
+PATIENCE = 10.0  # s that a rank in error waits for the others to get there too
+
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
 Overrides = Annotated[
     list[str] | None,
@@ -37,6 +39,7 @@ def rank_and_size() -> tuple[int, int]:
     for rank, size in (
         ("OMPI_COMM_WORLD_RANK", "OMPI_COMM_WORLD_SIZE"),
         ("PMI_RANK", "PMI_SIZE"),
+        ("PMIX_RANK", "SLURM_NTASKS"),
     ):
         if rank in os.environ and size in os.environ:
             return int(os.environ[rank]), int(os.environ[size])
@@ -56,7 +59,7 @@ def _leave_together(code: int) -> None:
     from mpi4py import MPI
 
     request = MPI.COMM_WORLD.Ibarrier()
-    deadline = time.monotonic() + 10.0
+    deadline = time.monotonic() + PATIENCE
     while not request.Test():
         if time.monotonic() > deadline:  # the error is not on all ranks: end the others
             MPI.COMM_WORLD.Abort(code)
@@ -80,10 +83,11 @@ class _Commands(TyperGroup):
         except (typer.Exit, typer.Abort, typer.TyperException):
             raise
         except Exception:
-            if rank_and_size()[1] > 1:  # a defect on one rank must not leave the others waiting
-                traceback.print_exc()
-                _leave_together(1)
-            raise
+            if rank_and_size()[1] == 1:
+                raise
+            traceback.print_exc()  # a defect on one rank must not leave the others waiting
+            _leave_together(1)
+            raise typer.Exit(1) from None
 
 
 app = typer.Typer(
@@ -101,11 +105,7 @@ def run(
     scene: SceneFile,
     out: Annotated[
         Path | None,
-        typer.Option(
-            "--out",
-            metavar="DIR",
-            help="Output directory; if not given, results/<scene file name>.",
-        ),
+        typer.Option("--out", metavar="DIR", help="If not given: results/<scene file name>."),
     ] = None,
     overrides: Overrides = None,
     petsc: Annotated[

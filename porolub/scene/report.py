@@ -49,9 +49,10 @@ def report(scene: Scene) -> RenderableType:
         "",
         _unknowns_table(scene, cost),
         "",
-        _conventions_table(scene),
     ]
-    notes = list(_notes(scene))
+    if scene.pores is not None:  # all of them are about the fluid in the pores
+        parts.append(_conventions_table(scene))
+    notes = _notes(scene)
     return Group(*parts, *([""] if notes else []), *notes)
 
 
@@ -152,6 +153,8 @@ def _conventions_table(scene: Scene) -> Table:
     table.add_column("meaning")
     for key, meanings in _READINGS.items():
         reading = getattr(scene.conventions, key)
+        if key == "entering" and "carry" not in effects(scene):
+            continue
         table.add_row(key, reading, meanings[reading])
     return table
 

@@ -58,6 +58,8 @@ def _mesh(scene: "Scene") -> Iterator[str]:
             yield f"mesh.{key} is missing: a number of elements such as 30 is needed."
     if scene.dimension == 2 and mesh.deep:
         yield f"mesh.deep = {mesh.deep} is given, but scene.dimension = 2: leave it out."
+    if mesh.grading == "contact" and scene.film is None and scene.contact is None:
+        yield 'mesh.grading = "contact" needs [contact] or [film]: otherwise there is no contact.'
     if scene.dimension == 3 and mesh.element != "quad":
         yield 'mesh.element = "triangle" does not fit scene.dimension = 3; allowed there: quad.'
 

@@ -68,7 +68,7 @@ class Scene(Section):
     @model_validator(mode="before")
     @classmethod
     def _entering_follows_base(cls, data: Any) -> Any:
-        """A bonded layer is undisturbed far away, so what enters is fresh unless asked otherwise."""
+        """A bonded layer is undisturbed far away: what enters is fresh unless asked otherwise."""
         if not isinstance(data, dict):
             return data
         solid, conventions = data.get("solid"), data.get("conventions", {})

@@ -50,7 +50,7 @@ NUMBER = Kind("a number", "", "0.5")
 
 # Only used to name what the user wrote when it is not what is needed; the order matters where
 # two kinds share a dimension.
-_KINDS = (
+KINDS = (
     LENGTH, PRESSURE, VISCOSITY, PERMEABILITY, COMPRESSIBILITY, DENSITY, ANGLE, ANGULAR_SPEED,
     SPEED, FREQUENCY, TIME, LINE_LOAD, FORCE, MOBILITY,
 )  # fmt: skip
@@ -108,7 +108,7 @@ def _has_angle(unit: Any) -> bool:
 
 def _describe(unit: Any) -> str:
     """Name the kind of a unit, for instance ``a length``."""
-    for kind in _KINDS:
+    for kind in KINDS:
         same = registry().Quantity(1, kind.unit).dimensionality == unit.dimensionality
         if same and kind.angular == _has_angle(unit):
             return kind.name.split(" (")[0]
