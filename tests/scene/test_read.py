@@ -7,6 +7,7 @@ import tomli_w
 
 from porolub.errors import SceneError
 from porolub.scene import load_scene, scene_from_dict
+from porolub.scene.overrides import apply_overrides
 from tests.scene.scenes import ROLLING, changed
 
 
@@ -115,3 +116,10 @@ def test_a_binary_file_is_no_scene(tmp_path: Path) -> None:
     path.write_bytes(b"\xff\xfe\x00")
     with pytest.raises(SceneError, match="UTF-8"):
         load_scene(path)
+
+
+def test_overrides_leave_the_tables_they_start_from_alone() -> None:
+    tables = changed(ROLLING)
+    changed_tables = apply_overrides(tables, ["mesh.along=3", "film=none"])
+    assert tables == ROLLING
+    assert changed_tables == changed(ROLLING, mesh={"along": 3}, film=None)
