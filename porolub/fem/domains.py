@@ -125,10 +125,12 @@ class Domain:
         return 2.0 / np.maximum(np.abs(self.inverse).sum(axis=2), 1e-300)
 
     def length_along(self, direction: Array, rows: slice = slice(None)) -> Array:
-        """(ne, nq) element length in a unit direction (ne, nq, dim): 2 / |d xi/dx . direction|."""
+        """(ne, nq) element length in a unit direction (ne, nq, dim): 2 / |d xi/dx . direction|; 0 without a
+        direction."""
         rate = np.einsum("eqrd,eqd->eqr", self.inverse[rows], direction)
         reach = 1.0 if self.mesh.cell_type in ("triangle", "tet") else 2.0
-        return reach / np.maximum(np.linalg.norm(rate, axis=-1), 1e-300)
+        size = np.linalg.norm(rate, axis=-1)
+        return np.divide(reach, size, out=np.zeros_like(size), where=size > 0)
 
 
 class NodalDomain(Domain):

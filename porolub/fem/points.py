@@ -28,9 +28,11 @@ class Points:
     (ne, nq, nc, dim).
     """
 
-    def __init__(self, domain, dofs: Dofs, local: Array, rows: slice, finite: bool) -> None:
+    def __init__(self, domain, dofs: Dofs, local: Array, rows: slice, finite: bool,
+                 previous: Array | None = None) -> None:
         self.domain, self.dofs, self.local, self.rows = domain, dofs, local, rows
         self.finite = finite
+        self._previous = previous
         self.dim = domain.dim
         self.position = domain.position[rows]
         self.normal = domain.normal[rows]
@@ -63,6 +65,12 @@ class Points:
         if self.has("u"):
             return Deformation(self.grad("u"), self.finite)
         return Deformation(np.zeros((*self.weights.shape, self.dim, self.dim)), False)
+
+    @cached_property
+    def before(self) -> Points:
+        """The same points in the previous state (the state at the start of a step)."""
+        assert self._previous is not None
+        return Points(self.domain, self.dofs, self._previous, self.rows, self.finite)
 
     def constant(self, array: Array) -> Array:
         """A (dim,) vector or (dim, dim) tensor repeated at every point."""

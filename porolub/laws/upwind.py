@@ -24,3 +24,10 @@ def streamline_diffusivity(speed: Array, length: Array, diffusivity: float) -> A
     """
     pe = speed * length / (2.0 * max(diffusivity, 1e-300))
     return speed * length / 2.0 * upwind_function(pe)
+
+
+def upwind_derivative(peclet: Array) -> Array:
+    """d/dPe of the upwind function, for Pe >= 0."""
+    small = peclet < 1e-2
+    safe = np.where(small, 1.0, np.minimum(peclet, 300.0))
+    return np.where(small, 1.0 / 3.0 - peclet**2 / 15.0, 1.0 / safe**2 - 1.0 / np.sinh(safe) ** 2)

@@ -28,6 +28,8 @@ from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
 from porolub.terms.pores import Pores
 from porolub.terms.skeleton import Skeleton
+from porolub.terms.squeeze import Squeeze
+from porolub.terms.storage import Storage
 from porolub.terms.streamline import Streamline
 from porolub.terms.surface_pressure import SurfacePressure
 from porolub.terms.term import Term
@@ -142,6 +144,8 @@ def build_terms(scene: Any, mesh: Any, law, scales: Scales, operation: Operation
         a = scene.pores.biot
         mobility = scene.pores.permeability / scene.pores.viscosity / scales.mobility
         terms.append(Pores(a, mobility, spatial, m.pressure_degree))
+        storage = scene.pores.storage * scales.pressure
+        terms.append(Storage(a, storage, operation))
         if scene.pores.carry:
             ends = tuple(e for e in ("inlet", "outlet") if e in mesh.boundary_names)
             terms.append(Carry(a, operation, ends, scene.conventions.entering == "fresh"))
@@ -155,7 +159,9 @@ def build_terms(scene: Any, mesh: Any, law, scales: Scales, operation: Operation
         lubricant = Newtonian(scene.film.viscosity / scales.viscosity,
                               scene.film.shear_film_min / scales.length)
         terms.append(Film(lubricant, plane, operation, boundary, displacement, force,
-                          m.pressure_degree, alone=scene.pores is None))
+                          m.pressure_degree, alone=scene.pores is None,
+                          upwind=(law.constrained_modulus, mobility) if displacement else None))
+        terms.append(Squeeze(plane, operation, boundary, displacement, force))
     if scene.contact is not None:
         friction = scene.contact.friction if scene.contact.friction_traction else 0.0
         terms.append(Contact(plane, operation, boundary, stiffness, friction, force, m.degree))

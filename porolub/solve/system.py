@@ -69,6 +69,7 @@ class System:
         self._plans: dict[str, dict[tuple[str, str], BlockPlan]] = {}
         self._values: Array | None = None
         self.lowest_jacobian = 1.0
+        self.previous: Array | None = None  # physical local vector at the start of a step
 
     # -- state --------------------------------------------------------------------------
     def _rotation_dofs(self) -> NDArray[np.int64]:
@@ -102,7 +103,8 @@ class System:
     def _points(self, name: str, local: Array):
         domain = self.domains[name]
         for start in range(0, len(domain), CHUNK):
-            yield Points(domain, self.dofs, local, slice(start, start + CHUNK), self.finite)
+            yield Points(domain, self.dofs, local, slice(start, start + CHUNK), self.finite,
+                         self.previous)
 
     def local_residual(self, x: Array, only: set[str] | None = None) -> Array:
         """Cartesian residual (size_local,) of this rank's entities, constraints not applied.

@@ -14,6 +14,7 @@ import numpy as np
 from porolub.fem.dofs import Field
 from porolub.fem.points import GRAD, VALUE, Integrand, Points
 from porolub.laws.lubricant import Newtonian, film_thickness
+from porolub.laws.upwind import upwind_derivative, upwind_function
 from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
 from porolub.terms.term import Part
@@ -29,6 +30,7 @@ class Film:
     approach: bool
     degree: int
     alone: bool  # no pores: the film brings its own pressure, on the surface only
+    upwind: tuple[float, float] | None = None  # layer modulus and mobility; None: rigid surface
     name: str = "film"
 
     def fields(self) -> list[Field]:
@@ -64,3 +66,27 @@ class Film:
             out.jacobian("p", GRAD, "p", GRAD, k[..., None, None] * tangential)
             by_gap = (dk[..., None] * g - U / 2.0) * dh[..., None]
             self.plane.chain(at, out, "p", GRAD, by_gap)
+        if self.upwind is not None:
+            self._upwind(at, out, h, dh, U)
+
+    def _upwind(self, at: Points, out: Integrand, h, dh, U) -> None:
+        """Streamline diffusion of the film thickness where the elements do not resolve it.
+
+        The deformable surface turns U/2 dh/ds into transport of h; film and pores answer a
+        short wave of h with the diffusivity (h^3/(12 eta) + k l) M / l.
+        """
+        modulus, mobility = self.upwind
+        speed = np.linalg.norm(U, axis=-1)
+        s = U / np.where(speed > 0, speed, 1.0)[..., None]
+        length = at.domain.length_along(s, at.rows)
+        length = length * self.operation.smoothing
+        resists = self.law.conductance(h) + mobility * length + 1e-300
+        peclet = speed * length**2 / (2.0 * modulus * resists)
+        extra = speed * length / 4.0 * upwind_function(peclet)
+        slope = self.plane.slope(at, s)
+        out.residual("p", GRAD, (extra * dh * slope)[..., None] * s)
+        if out.wants_jacobian:
+            by_h = (speed * length / 4.0 * upwind_derivative(peclet) * -peclet / resists
+                    * self.law.conductance_derivative(h))
+            self.plane.chain(at, out, "p", GRAD, (by_h * dh * slope)[..., None] * s)
+            self.plane.chain_slope(at, out, "p", GRAD, (extra * dh)[..., None] * s, s)

@@ -28,6 +28,10 @@ class Operation:
     direction: tuple[float, ...] = (1.0, 0.0)
     force: float | None = None
     approach: float = 0.0
+    friction: float = 1.0
+    smoothing: float = 1.0
+    wedge: float = 1.0
+    rate: float = 0.0  # 1 / time step; 0: steady
 
     def body_velocity(self, X: Array) -> Array:
         """v = Omega e_z x (X - x0), (..., dim); zero unless the body rotates."""
@@ -46,7 +50,7 @@ class Operation:
 
     def entrainment(self, X: Array, normal: Array) -> Array:
         """Sum velocity of the two surfaces along the surface: the film carries half of it."""
-        v = self.body_velocity(X) + self.plane_velocity(X)
+        v = self.wedge * (self.body_velocity(X) + self.plane_velocity(X))
         return v - np.einsum("...d,...d->...", v, normal)[..., None] * normal
 
     def sliding_direction(self, X: Array, normal: Array) -> Array:

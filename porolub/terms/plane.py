@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porolub.fem.points import VALUE, Integrand, Points
+from porolub.fem.points import GRAD, VALUE, Integrand, Points
 from porolub.terms.operation import Operation
 
 Array = NDArray[np.float64]
@@ -32,6 +32,19 @@ class Plane:
             reach = reach + at.value("u") @ m
         approach = at.value("v0") if at.has("v0") else self.operation.approach
         return self.offset - reach - approach
+
+    def slope(self, at: Points, along: Array) -> Array:
+        """d gap / d s in the tangential unit direction ``along`` (ne, nq, dim)."""
+        moved = np.einsum("...ij,...j->...i", at.deformation.F, along)
+        return -moved @ np.asarray(self.toward)
+
+    def chain_slope(self, at: Points, out: Integrand, test: str, op: bool, by_slope: Array,
+                    along: Array) -> None:
+        """Add the tangent of a contribution whose derivative by the slope is ``by_slope``."""
+        if at.has("u"):
+            m = np.asarray(self.toward)
+            dslope = -m[:, None] * along[..., None, :]
+            out.jacobian(test, op, "u", GRAD, by_slope[..., None, None] * dslope[..., None, :, :])  # by_slope is a flux (.., dim)
 
     def chain(self, at: Points, out: Integrand, test: str, op: bool, by_gap: Array) -> None:
         """Add the tangent of a contribution whose derivative by the gap is ``by_gap``."""
