@@ -69,7 +69,8 @@ def draw_flows(surface: SurfaceData, title: str) -> Figure:
         _show_both_signs(ax, values)
     label(flux, y="film flux Q [mm²/s]")
     label(flow, _ALONG, "flow out of the layer V [μm/s]")
-    explain(flux, zone)
+    if zone:
+        explain(flux, zone)
     figure.align_ylabels([flux, flow])
     return figure
 

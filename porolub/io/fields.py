@@ -66,7 +66,7 @@ def read_fields(directory: Path) -> FieldData:
 
 
 def _fields(file: h5py.File) -> FieldData:
-    arrays = {name: np.asarray(file[name]) for name in file}
+    arrays = {name: file[name][()] for name in file}
     nodes = arrays["nodes"]
     dim = nodes.shape[1]
     return FieldData(
