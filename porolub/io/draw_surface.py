@@ -46,9 +46,9 @@ def draw_pressures(surface: SurfaceData, title: str) -> Figure:
     if not np.isnan(film).all():
         right = ax.twinx()
         tidy(right)
-        curve = right.semilogy(s, 1e6 * film, color=GREEN, lw=2, ls="-.", label="film thickness h")
-        handles += curve
-        label(right, y="film thickness h [μm]", colour=GREEN)
+        name = "film thickness h" if surface.Q.any() else "gap h"
+        handles += right.semilogy(s, 1e6 * film, color=GREEN, lw=2, ls="-.", label=name)
+        label(right, y=f"{name} [μm]", colour=GREEN)
         right.set_ylim(bottom=10 ** math.floor(math.log10(1e6 * np.nanmin(film))))
         right.yaxis.set_major_formatter(StrMethodFormatter("{x:g}"))
     explain(ax, handles)

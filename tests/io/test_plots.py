@@ -95,6 +95,13 @@ def test_surface_figure_has_both_pressures_the_film_and_the_contact(surface: Sur
     np.testing.assert_allclose([zone[:, 0].min(), zone[:, 0].max()], [-4.0, 4.0])
 
 
+def test_without_fluid_the_gap_is_no_film(surface: SurfaceData) -> None:
+    zero = 0 * surface.s
+    left, right = draw_pressures(replace(surface, p=zero, Q=zero, V=zero), "test").axes
+    assert right.get_ylabel() == "gap h [μm]"
+    assert not any(str(line.get_label()).startswith("fluid") for line in left.lines)
+
+
 def test_without_contact_nothing_is_shaded(surface: SurfaceData) -> None:
     figure = draw_pressures(replace(surface, p_c=0 * surface.p_c, h=surface.h + 1e-6), "test")
     assert not figure.axes[0].patches
