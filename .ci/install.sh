@@ -67,7 +67,7 @@ echo "${petsc[0]}" >"$site/petsc.pth"
 say "installing porolub and its Python packages into .venv"
 "$python" -m pip install --quiet --disable-pip-version-check --editable '.[dev]' ||
     stop "cannot install the Python packages (see above; no network or no C compiler?)."
-"$python" -c 'import gmsh, h5py, meshio, mpi4py.MPI, petsc4py, scipy' ||
+"$python" -c 'import gmsh, h5py, meshio, mpi4py, petsc4py, scipy' ||
     stop "the installation is not complete: a package cannot be imported (see above)."
 echo "$key" >"$stamp"
 say "installed in $root/.venv"

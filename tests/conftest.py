@@ -9,6 +9,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
+
+# a loaded machine is no failure; a commit is judged on the same examples each time
+settings.register_profile("porolub", deadline=None, derandomize=bool(os.environ.get("CI")))
+settings.load_profile("porolub")
 
 for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "OMPI_MCA_rmaps_base_oversubscribe"):
     os.environ[variable] = "1"  # before NumPy is imported

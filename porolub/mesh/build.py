@@ -51,28 +51,43 @@ def build_mesh(
     """
     comm = comm.tompi4py() if isinstance(comm, PETSc.Comm) else comm
     degree = scene.mesh.degree if degree is None else degree
-    shape: Shape | None = None
-    ticks: tuple[Array, ...] = ()
+    shape = None
     if scene.geometry.shape != "file":
         shape = shape_from_scene(scene, length_scale)
-        count = along or scene.mesh.along
-        line = uniform_ticks(count)
-        if edges is not None and len(edges) and edge_size:
-            arc = graded_ticks(shape.length, count, edges, edge_size, edge_band)
-            line = arc / shape.length + 0.5
-        ticks = (line, uniform_ticks(across or scene.mesh.across, surface_ratio))
-        if shape.dim == 3:
-            ticks += (uniform_ticks(scene.mesh.deep),)
-    raw, problem = None, None
+    raw: RawMesh | None = None
+    result: tuple[Array, ...] | SceneError = ()
     if comm.rank == 0:
         try:
+            ticks: tuple[Array, ...] = ()
+            if shape is not None:
+                counts = along or scene.mesh.along, across or scene.mesh.across, scene.mesh.deep
+                near = () if edges is None else tuple(edges)
+                ticks = _ticks(shape, counts, near, edge_size, edge_band, surface_ratio)
             raw = _raw_mesh(scene, shape, ticks, length_scale)
+            result = ticks
         except SceneError as error:
-            problem = str(error)
-    problem = comm.bcast(problem)
-    if problem is not None:
-        raise SceneError(problem)
-    return distributed(raw, comm, degree, shape, ticks)
+            result = error
+    result = comm.bcast(result)
+    if isinstance(result, SceneError):
+        raise result
+    return distributed(raw, comm, degree, shape, result)
+
+
+def _ticks(
+    shape: Shape,
+    counts: tuple[int, int, int],
+    edges: Sequence[float],
+    edge_size: float | None,
+    edge_band: float,
+    surface_ratio: float,
+) -> tuple[Array, ...]:
+    """Logical positions of the vertices along each axis."""
+    line = uniform_ticks(counts[0])
+    if edges and edge_size is not None:
+        arc = graded_ticks(shape.length, counts[0], edges, edge_size, edge_band)
+        line = arc / shape.length + 0.5
+    ticks = (line, uniform_ticks(counts[1], surface_ratio))
+    return ticks if shape.dim == 2 else (*ticks, uniform_ticks(counts[2]))
 
 
 def _raw_mesh(
