@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
@@ -157,6 +158,33 @@ class Dofs:
     def field(self, name: str, local: Array) -> Array:
         """View (nodes, components) of one field in a local vector, in the order of ``nodes``."""
         return local[self.range[name]].reshape(-1, self.fields[name].components)
+
+    def field_norms(self, v: PETSc.Vec, order: float) -> dict[str, float]:
+        """Norm of each field's owned part over all ranks: order 2, or infinity for the maximum."""
+        first = v.getOwnershipRange()[0]
+        parts = []
+        for r in self.range.values():
+            mine = v.array_r[self.global_numbers[r][self.owned[r]] - first]
+            parts.append(np.abs(mine).max(initial=0.0) if np.isinf(order) else mine @ mine)
+        total = np.array(parts)
+        self.mesh.comm.Allreduce(MPI.IN_PLACE, total, MPI.MAX if np.isinf(order) else MPI.SUM)
+        if not np.isinf(order):
+            total = np.sqrt(total)
+        return dict(zip(self.range, total.tolist(), strict=True))
+
+    def scalar_value(self, name: str, v: PETSc.Vec) -> float:
+        """Value of a global scalar, on every rank."""
+        k = self.range[name].start
+        mine = None
+        if self.owned[k]:
+            mine = float(v.array_r[self.global_numbers[k] - v.getOwnershipRange()[0]])
+        return self.mesh.comm.bcast(mine, root=self.mesh.comm.size - 1)
+
+    def set_scalar(self, name: str, v: PETSc.Vec, value: float) -> None:
+        """Set a global scalar in a global vector."""
+        k = self.range[name].start
+        if self.owned[k]:
+            v.array[self.global_numbers[k] - v.getOwnershipRange()[0]] = value
 
     def index_set(self, name: str) -> PETSc.IS:
         """Owned global dofs of one field."""

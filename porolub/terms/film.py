@@ -79,7 +79,6 @@ class Film:
         speed = np.linalg.norm(U, axis=-1)
         s = U / np.where(speed > 0, speed, 1.0)[..., None]
         length = at.domain.length_along(s, at.rows)
-        length = length * self.operation.smoothing
         resists = self.law.conductance(h) + mobility * length + 1e-300
         peclet = speed * length**2 / (2.0 * modulus * resists)
         extra = speed * length / 4.0 * upwind_function(peclet)

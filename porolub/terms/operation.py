@@ -20,6 +20,8 @@ class Operation:
     kind: ``rest``, ``rotation`` (body turns about ``centre``, speed in rad per time) or
     ``sliding`` (plane moves along ``direction``, speed in length per time).
     force: load to balance, or None when ``approach`` is prescribed.
+    friction: share of the dry friction that acts (continuation).
+    rate: 1 / time step of a start-up step, 0 in a steady solve.
     """
 
     kind: str = "rest"
@@ -29,9 +31,7 @@ class Operation:
     force: float | None = None
     approach: float = 0.0
     friction: float = 1.0
-    smoothing: float = 1.0
-    wedge: float = 1.0
-    rate: float = 0.0  # 1 / time step; 0: steady
+    rate: float = 0.0
 
     def body_velocity(self, X: Array) -> Array:
         """v = Omega e_z x (X - x0), (..., dim); zero unless the body rotates."""
@@ -50,7 +50,7 @@ class Operation:
 
     def entrainment(self, X: Array, normal: Array) -> Array:
         """Sum velocity of the two surfaces along the surface: the film carries half of it."""
-        v = self.wedge * (self.body_velocity(X) + self.plane_velocity(X))
+        v = self.body_velocity(X) + self.plane_velocity(X)
         return v - np.einsum("...d,...d->...", v, normal)[..., None] * normal
 
     def sliding_direction(self, X: Array, normal: Array) -> Array:

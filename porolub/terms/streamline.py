@@ -39,7 +39,7 @@ class Streamline:
         v = self.operation.body_velocity(at.position)
         speed = np.linalg.norm(v, axis=-1)
         s = v / np.where(speed > 0, speed, 1.0)[..., None]
-        length = at.domain.length_along(s, at.rows) * self.operation.smoothing
+        length = at.domain.length_along(s, at.rows)
         extra = streamline_diffusivity(speed, length, self.mobility / self.capacity)
         K = (self.weight * self.capacity * extra)[..., None, None] * s[..., :, None] * s[..., None, :]
         out.residual("p", GRAD, np.einsum("...jk,...k->...j", K, at.grad("p")))

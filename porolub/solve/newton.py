@@ -1,0 +1,174 @@
+"""Newton's method: SNES with the exact Jacobian, a step limiter and a convergence test by field.
+
+Contact and film make the residual kinked, and a line search that insists on descent stalls at
+the kinks; full steps, shortened only when they are implausibly long, converge (measured on the
+paper's cases).  Convergence is judged by the update of each field, in scaled units.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+
+import numpy as np
+from petsc4py import PETSc
+
+from porolub.solve.report import NewtonRecord
+from porolub.solve.system import System
+
+CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_SNORM_RELATIVE
+GOES_ON = PETSc.SNES.ConvergedReason.ITERATING
+DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
+TOO_MANY = PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
+
+# Largest plausible update of one iteration, in thicknesses and moduli.
+LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03}
+
+
+@dataclass
+class Clock:
+    """Wall time spent by purpose, seconds."""
+
+    start: float = field(default_factory=time.perf_counter)
+    spent: dict[str, float] = field(default_factory=lambda: {
+        "setup": 0.0, "assembly": 0.0, "linear_solve": 0.0, "output": 0.0})
+
+    def add(self, what: str, since: float) -> None:
+        self.spent[what] += time.perf_counter() - since
+
+    def elapsed(self) -> float:
+        return time.perf_counter() - self.start
+
+
+@dataclass
+class NewtonResult:
+    """converged; iterations; why: a sentence when it failed; place: where it is worst."""
+
+    converged: bool
+    iterations: int
+    why: str = ""
+
+
+class Newton:
+    """Solves F(x) = 0 for one System; reusable over continuation steps (one symbolic analysis).
+
+    ``observe`` is called with a NewtonRecord after each iteration.
+    """
+
+    def __init__(self, system: System, clock: Clock,
+                 observe: Callable[[NewtonRecord], None] = lambda record: None) -> None:
+        self.system, self.clock, self.observe = system, clock, observe
+        self.dofs = system.dofs
+        self.stage, self.fraction = "steady", 1.0
+        self.iterations = self.linear_iterations = 0
+        self.limits = dict(LIMITS)
+        self.tolerance, self.max_iterations = 1e-9, 40
+        self.abort_below = 0.0  # lowest J tolerated
+        start = time.perf_counter()
+        self.matrix = system.create_matrix()
+        self._residual = self.dofs.vector()
+        self.snes = self._snes()
+        clock.add("setup", start)
+
+    def _snes(self) -> PETSc.SNES:
+        snes = PETSc.SNES().create(comm=self.dofs.mesh.comm)
+        snes.setOptionsPrefix("porolub_")
+        snes.setType("newtonls")
+        snes.setFunction(self._function, self._residual)
+        snes.setJacobian(self._jacobian, self.matrix)
+        snes.setLineSearchPreCheck(self._limit_step)
+        snes.setConvergenceTest(self._test)
+        options = PETSc.Options()
+        defaults = {"snes_linesearch_type": "basic", "ksp_type": "preonly", "pc_type": "lu",
+                    "pc_factor_mat_solver_type": "mumps", "mat_mumps_icntl_14": 80}
+        for key, value in defaults.items():
+            if not options.hasName(f"porolub_{key}"):
+                options.setValue(f"porolub_{key}", value)
+        snes.setTolerances(max_it=1000)
+        snes.setFromOptions()
+        snes.getKSP().setErrorIfNotConverged(False)
+        return snes
+
+    # -- callbacks ----------------------------------------------------------------------
+    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        start = time.perf_counter()
+        self.system.residual(x, f)
+        self.clock.add("assembly", start)
+        self._solve_start = None
+
+    def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
+        start = time.perf_counter()
+        self.system.jacobian(x, P)
+        self.clock.add("assembly", start)
+        self._solve_start = time.perf_counter()
+
+    def _limit_step(self, x: PETSc.Vec, y: PETSc.Vec) -> bool:
+        """Shorten the update y; x_new = x - y."""
+        if self._solve_start is not None:
+            self.clock.add("linear_solve", self._solve_start)
+        self.linear_iterations += max(self.snes.getKSP().getIterationNumber(), 1)
+        self._updates = self.dofs.field_norms(y, np.inf)
+        worst = max((size / self.limits[name] for name, size in self._updates.items()), default=0.0)
+        self._damping = 1.0 if worst <= 1.0 else 1.0 / worst
+        if not np.isfinite(worst):
+            self._damping = 1.0
+        if self._damping < 1.0:
+            y.scale(self._damping)
+            return True
+        return False
+
+    def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, ...]) -> int:
+        if iteration == 0:
+            self._updates, self._damping = {}, 1.0
+        record = self._record(iteration, snes)
+        if iteration > 0:
+            self.iterations += 1
+            self.observe(record)
+        size = max(self._updates.values(), default=np.inf)
+        if not np.isfinite(norms[2]):
+            self._why = "the residual is not finite"
+            return DIVERGED
+        if self.system.lowest_jacobian <= self.abort_below:
+            self._why = f"the volume ratio J fell to {self.system.lowest_jacobian:.2g}"
+            return DIVERGED
+        if self._damping == 1.0 and size < self.tolerance:
+            return CONVERGED
+        if iteration >= self.max_iterations:
+            worst = max(self._updates, key=lambda name: self._updates[name])
+            self._why = (f"no convergence in {iteration} Newton iterations "
+                         f"(last update of {worst}: {self._updates[worst]:.1e} scaled)")
+            return TOO_MANY
+        return GOES_ON
+
+    def _record(self, iteration: int, snes: PETSc.SNES) -> NewtonRecord:
+        residuals = self.dofs.field_norms(snes.getFunction()[0], 2)
+        return NewtonRecord(self.stage, self.fraction, iteration, residuals, dict(self._updates),
+                            self._damping, self._load_fraction(residuals), self.clock.elapsed())
+
+    def _load_fraction(self, residuals: dict[str, float]) -> float:
+        force = next((t.operation.force for t in self.system.terms if t.name == "load"), None)
+        if force is None:
+            return float("nan")
+        signed = self.dofs.scalar_value("v0", self.snes.getFunction()[0])
+        return 1.0 + signed / force if force else float("nan")
+
+    # -- use ----------------------------------------------------------------------------
+    def solve(self, x: PETSc.Vec, stage: str = "steady", fraction: float = 1.0,
+              tolerance: float = 1e-9, max_iterations: int = 40) -> NewtonResult:
+        """Solve from x, in place."""
+        self.stage, self.fraction = stage, fraction
+        self.tolerance, self.max_iterations, self._why = tolerance, max_iterations, ""
+        before = self.iterations
+        self.system.apply_conditions(x)
+        self.snes.solve(None, x)
+        reason = self.snes.getConvergedReason()
+        if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
+            self._why = "the linear solver failed: the matrix is singular to working precision"
+        if reason < 0 and not self._why:
+            self._why = f"SNES stopped with reason {reason}"
+        return NewtonResult(reason > 0, self.iterations - before, self._why)
+
+    def destroy(self) -> None:
+        for o in (self.snes, self.matrix, self._residual):
+            o.destroy()

@@ -1,0 +1,95 @@
+"""From zero to the steady state without hand-made steps.
+
+First Newton straight from the undeformed state.  Where that fails, the physical start-up: the
+plane comes down on the film at full speed and load, in backward Euler steps of the true storage
+and squeeze terms whose size follows Newton's ease, until the state no longer changes; then
+steady Newton.  Squeeze keeps the surfaces apart while the pressure builds, so contact is reached
+last and from the right side.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from petsc4py import PETSc
+
+from porolub.solve.model import Model
+from porolub.solve.newton import Newton, NewtonResult
+
+PRESSED_IN = 0.05  # first guess of the approach for a straight start, thicknesses
+LIFTED = -0.01  # where the plane starts in the physical start-up
+STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3}
+
+
+@dataclass(frozen=True)
+class StartUp:
+    """Knobs of the start-up, in scaled time (one unit is the consolidation time of the layer)."""
+
+    first_step: float = 1e-4
+    smallest_step: float = 1e-7
+    steps: int = 120
+    settled: float = 2e-3  # change per step below which steady Newton is tried
+    settled_after: float = 0.05
+
+
+class Starter:
+    """Finds the steady state of one model."""
+
+    def __init__(self, model: Model, newton: Newton) -> None:
+        self.model, self.newton, self.steps, self.rejected = model, newton, 0, 0
+
+    def zero(self, approach: float) -> PETSc.Vec:
+        x = self.model.dofs.vector()
+        if "v0" in self.model.dofs.fields:
+            self.model.dofs.set_scalar("v0", x, approach)
+        return x
+
+    def straight(self, x: PETSc.Vec, stage: str, max_iterations: int = 25) -> NewtonResult:
+        """Steady Newton from x."""
+        self.model.operation.rate = 0.0
+        return self.newton.solve(x, stage, 1.0, max_iterations=max_iterations)
+
+    def physical(self, x: PETSc.Vec, options: StartUp = StartUp()) -> NewtonResult:
+        """Start-up in time from x, in place; ends with steady Newton."""
+        operation, system, dofs = self.model.operation, self.model.system, self.model.dofs
+        target = operation.approach
+        limits, self.newton.limits = self.newton.limits, dict(STEP_LIMIT)
+        self.newton.abort_below = 0.05
+        dt, t = options.first_step, 0.0
+        result = NewtonResult(False, 0, "the start-up did not settle")
+        for _ in range(options.steps):
+            operation.rate = 1.0 / dt
+            system.previous = system.physical(dofs.to_local(x))
+            if operation.force is None:  # a prescribed approach comes down with time
+                operation.approach = LIFTED + (target - LIFTED) * min(1.0, (t + dt) / 0.01)
+            trial = x.copy()
+            step = self.newton.solve(trial, "start-up", min(1.0, t), 1e-3, 10)
+            if not step.converged:
+                self.rejected += 1
+                dt *= 0.25
+                trial.destroy()
+                if dt < options.smallest_step:
+                    result = NewtonResult(False, 0, f"the start-up stalled at t = {t:.2g} "
+                                          f"consolidation times: {step.why}")
+                    break
+                continue
+            self.steps += 1
+            t += dt
+            x.aypx(-1.0, trial)
+            change = max(dofs.field_norms(x, np.inf).values())
+            trial.copy(x)
+            trial.destroy()
+            if change < options.settled and dt > options.settled_after:
+                operation.rate, operation.approach = 0.0, target
+                attempt = x.copy()
+                result = self.newton.solve(attempt, "steady", 1.0, max_iterations=20)
+                if result.converged:
+                    attempt.copy(x)
+                attempt.destroy()
+                if result.converged:
+                    break
+            dt *= 3.0 if step.iterations <= 3 else 2.0 if step.iterations <= 5 else 1.3
+        operation.rate, operation.approach = 0.0, target
+        self.newton.limits, self.newton.abort_below = limits, 0.0
+        return result
