@@ -1,5 +1,8 @@
 """Reading a user's mesh: any file meshio knows, with named boundaries, lengths in metres."""
 
+import contextlib
+import io
+import logging
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
@@ -13,6 +16,8 @@ from porolub.mesh.raw import RawMesh, face_keys, oriented
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+
+log = logging.getLogger(__name__)
 
 KINDS = {
     "quad": ("quad", "quad8", "quad9"),
@@ -32,10 +37,7 @@ def read_mesh(path: Path, dim: int, length_scale: float, required: Collection[st
     file cannot be read, mixes cell types or lacks one of the `required` boundaries.
     """
     here = f"geometry.path = '{path}'"
-    try:
-        file = meshio.read(path)
-    except (Exception, SystemExit) as error:  # meshio ends the process on files it cannot read
-        raise SceneError(f"{here} cannot be read as a mesh: {error}.") from error
+    file = _read_quietly(path, here)
     kinds = {block.type for block in file.cells}
     present = [
         (cell, name)
@@ -81,6 +83,23 @@ def read_mesh(path: Path, dim: int, length_scale: float, required: Collection[st
     return oriented(
         RawMesh(cell, points[used], flat.reshape(corners.shape), boundaries, tuple(middle))
     )
+
+
+def _read_quietly(path: Path, here: str) -> meshio.Mesh:
+    """meshio.read, which prints and, on files it cannot read, ends the process."""
+    printed = io.StringIO()
+    try:
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+            file = meshio.read(path)
+    except SystemExit as error:
+        reason = "no reader for files of that name accepts it"
+        raise SceneError(f"{here} cannot be read as a mesh: {reason}.") from error
+    except Exception as error:  # readers of broken files fail in every possible way
+        reason = str(error).rstrip(".") or type(error).__name__
+        raise SceneError(f"{here} cannot be read as a mesh: {reason}.") from error
+    if printed.getvalue().strip():
+        log.info("%s: %s", here, " ".join(printed.getvalue().split()))
+    return file
 
 
 def _named_facets(file: meshio.Mesh, dim: int) -> Iterator[tuple[str, Index]]:

@@ -115,11 +115,14 @@ def test_no_names_at_all(tmp_path):
         build(path)
 
 
-def test_unreadable_and_unfit_files_are_refused(tmp_path):
+def test_unreadable_and_unfit_files_are_refused(tmp_path, capfd):
     broken = tmp_path / "a.msh"
     broken.write_text("no mesh\n")
-    with pytest.raises(SceneError, match="cannot be read as a mesh"):
+    with pytest.raises(SceneError, match="cannot be read as a mesh: no reader"):
         build(broken)
+    with pytest.raises(SceneError, match="cannot be read as a mesh: Could not deduce"):
+        build(broken.rename(tmp_path / "a.xyz"))
+    assert capfd.readouterr() == ("", "")
     with pytest.raises(SceneError, match="must hold one kind of 3D cells"):
         build(sector_file(tmp_path / "b.msh"), 3)
     with pytest.raises(SceneError, match="must hold one kind of 2D cells"):

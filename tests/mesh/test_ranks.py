@@ -79,7 +79,7 @@ def test_an_error_on_rank_0_reaches_all_ranks(run_mpi, tmp_path):
         try:
             build_mesh(scene("file", path="absent.msh"), MPI.COMM_WORLD)
         except SceneError as error:
-            print("refused:", error, flush=True)
+            print(f"refused: {error}\\n", end="", flush=True)
         """,
     )
     assert output.count("refused: geometry.path = 'absent.msh' cannot be read") == 2
