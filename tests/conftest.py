@@ -42,19 +42,24 @@ def _stop_session(process: "subprocess.Popen[str]") -> None:
 
 @pytest.fixture
 def run_mpi(tmp_path: Path) -> RunMPI:
-    """`run_mpi(n, script_or_code, *args, timeout=120)` -> what the ranks printed.
+    """`run_mpi(n, script_or_code, *args, timeout=120, code=0)` -> what the ranks printed.
 
     Runs a script (a Path) or code (a string, dedented) on n ranks in `tmp_path` and fails with
-    the end of the output when it fails or takes longer than `timeout` seconds.
+    the end of the output when it takes longer than `timeout` seconds or ends with another exit
+    code than `code`.
     """
 
-    def run(ranks: int, what: str | Path, *args: object, timeout: float = 120.0) -> str:
+    def run(
+        ranks: int, what: str | Path, *args: object, timeout: float = 120.0, code: int = 0
+    ) -> str:
         script = what if isinstance(what, Path) else tmp_path / "ranks.py"
         if isinstance(what, str):
             script.write_text(textwrap.dedent(what))
         path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
         command = ["mpirun", "-n", str(ranks), "--bind-to", "none", sys.executable]
         command = [*command, str(script), *map(str, args)]
+        # env is given in full: MPI in this process has put variables of its own into the
+        # environment behind Python's back, and mpirun fails when it inherits them
         process = subprocess.Popen(
             command,
             cwd=tmp_path,
@@ -74,7 +79,7 @@ def run_mpi(tmp_path: Path) -> RunMPI:
         except BaseException:
             _stop_session(process)
             raise
-        if process.returncode:
+        if process.returncode != code:
             pytest.fail(f"exit code {process.returncode} on {ranks} ranks:\n{output[-8000:]}")
         return output
 

@@ -91,3 +91,4 @@ def test_run_mpi_ends_what_takes_too_long(run_mpi):
         run_mpi(2, "import time; time.sleep(60)", timeout=2)
     with pytest.raises(pytest.fail.Exception, match="exit code"):
         run_mpi(2, "raise SystemExit(7)")
+    run_mpi(2, "raise SystemExit(7)", code=7)
