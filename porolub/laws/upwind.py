@@ -13,7 +13,8 @@ def upwind_function(peclet: Array) -> Array:
     pe = np.abs(peclet)
     small = pe < 1e-2
     safe = np.where(small, 1.0, pe)
-    return np.where(small, pe / 3.0 - pe**3 / 45.0, 1.0 / np.tanh(safe) - 1.0 / safe)
+    series = pe / 3.0 - np.minimum(pe, 1.0) ** 3 / 45.0  # used below 0.01; must not overflow
+    return np.where(small, series, 1.0 / np.tanh(safe) - 1.0 / safe)
 
 
 def streamline_diffusivity(speed: Array, length: Array, diffusivity: float) -> Array:
@@ -29,5 +30,6 @@ def streamline_diffusivity(speed: Array, length: Array, diffusivity: float) -> A
 def upwind_derivative(peclet: Array) -> Array:
     """d/dPe of the upwind function, for Pe >= 0."""
     small = peclet < 1e-2
-    safe = np.where(small, 1.0, np.minimum(peclet, 300.0))
-    return np.where(small, 1.0 / 3.0 - peclet**2 / 15.0, 1.0 / safe**2 - 1.0 / np.sinh(safe) ** 2)
+    safe = np.where(small, 1.0, peclet)
+    closed = (1.0 / safe) ** 2 - 1.0 / np.sinh(np.minimum(safe, 300.0)) ** 2
+    return np.where(small, 1.0 / 3.0 - np.minimum(peclet, 1.0) ** 2 / 15.0, closed)
