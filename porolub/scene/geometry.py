@@ -28,8 +28,8 @@ class Shape(Section):
     has_axis: ClassVar[bool] = True
 
     def boundary_names(self, dimension: int) -> tuple[str, ...] | None:
-        """Return the names of the boundaries in a scene of the given dimension."""
-        raise NotImplementedError
+        """Return the names of the boundaries in a scene of the given dimension, if known."""
+        return None
 
 
 class Arc(Shape):
