@@ -96,7 +96,7 @@ def faces(cell: str) -> list[tuple[int, ...]]:
         return [tuple(e) for e in EDGES[cell]]
     if cell == "hex":
         return HEX_FACES
-    return [(0, 1, 3), (1, 2, 3), (2, 0, 3), (0, 2, 1)]
+    return [(1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)]
 
 
 def face_points(cell: str, face: int, points: Array) -> tuple[Array, Array]:
