@@ -113,14 +113,22 @@ class Newton:
         self._damping = 1.0 if worst <= 1.0 else 1.0 / worst
         if not np.isfinite(worst):
             self._damping = 1.0
+        self._damping *= self._cycle_breaker(worst * self._damping)
         if self._damping < 1.0:
             y.scale(self._damping)
             return True
         return False
 
+    def _cycle_breaker(self, size: float) -> float:
+        """Half steps once the updates stop shrinking: nodes flip between open and closed."""
+        self._stalled = self._stalled + 1 if size > 0.7 * self._previous_size else 0
+        self._previous_size = size
+        return 0.5 if self._stalled >= 3 else 1.0
+
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, ...]) -> int:
         if iteration == 0:
             self._updates, self._damping = {}, 1.0
+            self._stalled, self._previous_size = 0, np.inf
         record = self._record(iteration, snes)
         if iteration > 0:
             self.iterations += 1

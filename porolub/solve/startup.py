@@ -28,7 +28,7 @@ class StartUp:
 
     first_step: float = 1e-4
     smallest_step: float = 1e-7
-    steps: int = 120
+    steps: int = 400
     settled: float = 2e-3  # change per step below which steady Newton is tried
     settled_after: float = 0.05
 
@@ -50,8 +50,12 @@ class Starter:
         self.model.operation.rate = 0.0
         return self.newton.solve(x, stage, 1.0, max_iterations=max_iterations)
 
-    def physical(self, x: PETSc.Vec, options: StartUp = StartUp()) -> NewtonResult:
-        """Start-up in time from x, in place; ends with steady Newton."""
+    def physical(self, x: PETSc.Vec, settle: bool = False,
+                 options: StartUp = StartUp()) -> NewtonResult:
+        """Start-up in time from x, in place; ends with steady Newton.
+
+        ``settle``: x is near the steady state already, so nothing is brought down.
+        """
         operation, system, dofs = self.model.operation, self.model.system, self.model.dofs
         target = operation.approach
         limits, self.newton.limits = self.newton.limits, dict(STEP_LIMIT)
@@ -61,7 +65,7 @@ class Starter:
         for _ in range(options.steps):
             operation.rate = 1.0 / dt
             system.previous = system.physical(dofs.to_local(x))
-            if operation.force is None:  # a prescribed approach comes down with time
+            if operation.force is None and not settle:  # a prescribed approach comes down with time
                 operation.approach = LIFTED + (target - LIFTED) * min(1.0, (t + dt) / 0.01)
             trial = x.copy()
             step = self.newton.solve(trial, "start-up", min(1.0, t), 1e-3, 10)

@@ -46,7 +46,7 @@ def snapshot(model: Model, x: PETSc.Vec) -> Snapshot:
         places = np.vstack(mesh.comm.allgather(places))
         values = np.vstack(mesh.comm.allgather(values))
         axes = _axes(mesh.dim, f.support)
-        all_ticks = mesh.ticks if f.degree == mesh.degree else mesh.vertex_ticks
+        all_ticks = mesh.ticks() if f.degree == mesh.degree else mesh.vertex_ticks
         ticks = tuple(np.asarray(all_ticks[k]) for k in axes)
         index = tuple(np.clip(np.searchsorted((t[1:] + t[:-1]) / 2, places[:, k]), 0, len(t) - 1)
                       for t, k in zip(ticks, axes, strict=True))

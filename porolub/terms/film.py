@@ -73,7 +73,9 @@ class Film:
         """Streamline diffusion of the film thickness where the elements do not resolve it.
 
         The deformable surface turns U/2 dh/ds into transport of h; film and pores answer a
-        short wave of h with the diffusivity (h^3/(12 eta) + k l) M / l.
+        short wave of h with the diffusivity (h^3/(12 eta) + k l) M / l.  The slope is that of the
+        gap itself, not of max(0, gap): cut off at a quadrature point it would jump there, and
+        Newton would cycle; on closed elements it is zero anyway.
         """
         modulus, mobility = self.upwind
         speed = np.linalg.norm(U, axis=-1)
@@ -83,9 +85,9 @@ class Film:
         peclet = speed * length**2 / (2.0 * modulus * resists)
         extra = speed * length / 4.0 * upwind_function(peclet)
         slope = self.plane.slope(at, s)
-        out.residual("p", GRAD, (extra * dh * slope)[..., None] * s)
+        out.residual("p", GRAD, (extra * slope)[..., None] * s)
         if out.wants_jacobian:
             by_h = (speed * length / 4.0 * upwind_derivative(peclet) * -peclet / resists
                     * self.law.conductance_derivative(h))
             self.plane.chain(at, out, "p", GRAD, (by_h * dh * slope)[..., None] * s)
-            self.plane.chain_slope(at, out, "p", GRAD, (extra * dh)[..., None] * s, s)
+            self.plane.chain_slope(at, out, "p", GRAD, extra[..., None] * s, s)

@@ -1,0 +1,184 @@
+"""One call from a scene to its steady state: coarse start, then finer meshes.
+
+On a structured shape the scene is first solved on a coarse mesh from zero, and the solution
+carried to the scene's mesh (graded toward the contact edges found on the way, if asked).  On a
+user's mesh the start-up runs on that mesh itself.
+"""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from petsc4py import PETSc
+
+from porolub.mesh import build_mesh
+from porolub.solve.model import Model, build_model, lubricated_name, scales_of
+from porolub.solve.newton import Clock, Newton, NewtonResult
+from porolub.solve.report import NewtonRecord
+from porolub.solve.startup import LIFTED, PRESSED_IN, Starter
+from porolub.solve.transfer import Snapshot, restore, snapshot
+
+log = logging.getLogger(__name__)
+COARSEST = 80  # elements along the surface on the first mesh, at most
+
+
+@dataclass(frozen=True)
+class Level:
+    """A mesh of the sequence: element counts, and whether it is graded."""
+
+    along: int
+    across: int
+    graded: bool = False
+
+
+@dataclass
+class Outcome:
+    """How a solve ended.
+
+    converged; message: a sentence for the user; model and x: the last state reached (kept on
+    failure too); newton: every iteration; totals of iterations and of start-up steps.
+    """
+
+    converged: bool
+    message: str
+    model: Model
+    x: PETSc.Vec
+    newton: list[NewtonRecord]
+    newton_iterations: int
+    linear_iterations: int
+    rejected_steps: int
+    clock: Clock
+
+
+def levels_of(scene: Any) -> list[Level]:
+    """Mesh sequence of a scene, coarsest first; one entry without coarser meshes."""
+    along, across = scene.mesh.along, scene.mesh.across
+    last = Level(along, across, scene.mesh.grading == "contact")
+    if scene.geometry.shape == "file" or lubricated_name(scene) is None:
+        return [last]
+    levels = [last]
+    if last.graded:
+        levels.insert(0, Level(along, across))
+    while levels[0].along > COARSEST:
+        first = levels[0]
+        levels.insert(0, Level(-(-first.along // 2), max(3, -(-first.across // 2))))
+    return levels
+
+
+class SteadySolver:
+    """Runs the mesh sequence of one scene."""
+
+    def __init__(self, scene: Any, comm: Any,
+                 observe: Callable[[NewtonRecord], None] = lambda record: None,
+                 announce: Callable[[str, float], None] = lambda name, fraction: None) -> None:
+        self.scene, self.comm, self.announce = scene, comm, announce
+        self.records: list[NewtonRecord] = []
+        self._observe = observe
+        self.clock = Clock()
+        self.newton_iterations = self.linear_iterations = self.rejected = 0
+
+    def observe(self, record: NewtonRecord) -> None:
+        self.records.append(record)
+        self._observe(record)
+
+    def solve(self) -> Outcome:
+        """Solve the scene. Raises SceneError for a scene the mesh or the model refuses."""
+        thickness = getattr(self.scene.geometry, "thickness", None) or 1e-3
+        scales = scales_of(self.scene, thickness)
+        data: Snapshot | None = None
+        edges: tuple[float, ...] = ()
+        levels = levels_of(self.scene)
+        for number, level in enumerate(levels):
+            start = time.perf_counter()
+            model = self._model(level, scales, edges)
+            self.clock.add("setup", start)
+            name = f"{level.along} x {level.across}" + (" graded" if level.graded else "")
+            self.announce(name, (number + 1) / len(levels))
+            newton = Newton(model.system, self.clock, self.observe)
+            x, result = self._level(model, newton, data, name)
+            self.newton_iterations += newton.iterations
+            self.linear_iterations += newton.linear_iterations
+            last = number == len(levels) - 1
+            newton.destroy()
+            if last or not result.converged and number == len(levels) - 1:
+                return self._outcome(result, model, x)
+            if result.converged:
+                data = snapshot(model, x)
+                edges = contact_edges(model, x)
+            else:
+                log.info("no steady state on %s (%s); trying the next mesh", name, result.why)
+            x.destroy()
+            model.destroy()
+            model.mesh.destroy()
+        raise AssertionError("unreachable: the last level returns")
+
+    def _model(self, level: Level, scales: Any, edges: tuple[float, ...]) -> Model:
+        options: dict[str, Any] = {}
+        if self.scene.geometry.shape != "file":
+            options = {"along": level.along, "across": level.across}
+            if level.graded and edges:
+                size = self.scene.mesh.edge_size
+                options |= {"edges": edges, "edge_size": (size or 10e-6) / scales.length}
+        mesh = build_mesh(self.scene, self.comm, length_scale=scales.length, **options)
+        return build_model(self.scene, mesh, scales)
+
+    def _level(self, model: Model, newton: Newton, data: Snapshot | None,
+               name: str) -> tuple[PETSc.Vec, NewtonResult]:
+        starter = Starter(model, newton)
+        if data is not None:
+            x = restore(model, data)
+            result = starter.straight(x, name)
+            if result.converged:
+                return x, result
+            x.destroy()
+            x = restore(model, data)
+            settle = True
+        else:
+            x = starter.zero(PRESSED_IN)
+            result = starter.straight(x, name)
+            if result.converged:
+                return x, result
+            x.destroy()
+            x = starter.zero(LIFTED)
+            settle = False
+        if self.scene.pores is not None or self.scene.film is not None:
+            log.info("%s: straight Newton failed (%s); starting up in time", name, result.why)
+            result = starter.physical(x, settle)
+            self.rejected += starter.rejected
+        return x, result
+
+    def _outcome(self, result: NewtonResult, model: Model, x: PETSc.Vec) -> Outcome:
+        message = "converged"
+        if not result.converged:
+            message = (f"The steady solve failed: {result.why}. Try a finer or graded mesh, "
+                       "a smaller load or speed, or look at the last state in the output.")
+        return Outcome(result.converged, message, model, x, self.records,
+                       self.newton_iterations, self.linear_iterations, self.rejected, self.clock)
+
+
+def contact_edges(model: Model, x: PETSc.Vec) -> tuple[float, ...]:
+    """Arc positions (mesh units) of the two ends of the closed zone; empty without contact.
+
+    Without contact: the place of the thinnest film, where the pressure is steepest.
+    """
+    dofs, mesh = model.dofs, model.mesh
+    if "l" not in dofs.fields or mesh.shape is None:
+        return ()
+    local = dofs.to_local(x)
+    nodes = dofs.nodes["l"]
+    s = (mesh.logical(mesh.coordinates[nodes])[:, 0] - 0.5) * mesh.shape.length
+    closed = dofs.field("l", local)[:, 0] > 1e-9
+    ends = np.array([-np.inf, -np.inf])
+    if closed.any():
+        ends = np.array([-s[closed].min(), s[closed].max()])
+    from mpi4py import MPI
+
+    mesh.comm.Allreduce(MPI.IN_PLACE, ends, MPI.MAX)
+    if not np.all(np.isfinite(ends)):
+        return ()
+    return (-float(ends[0]), float(ends[1]))
