@@ -32,7 +32,8 @@ class Domain:
 
     Attributes
     ----------
-    name: what it is: ``cells``, ``facets:NAME`` or ``nodes:NAME``
+    name: what it is: ``cells``, ``facets:NAME`` or ``nodes:NAME`` (or ``nodes of cells``: the
+        cells with their own nodes as points, to evaluate there)
     cells: (ne,) local cell number of each entity, or (ne,) node numbers on a nodal domain
     variant: (ne,) which rows of the tables an entity uses
     weights: (ne, nq) quadrature weight times measure
@@ -46,16 +47,18 @@ class Domain:
         self.dim: int = mesh.dim
         kind, _, boundary = name.partition(":")
         if kind == "cells":
-            self._cells(points_per_direction)
+            self._cells(*quadrature.rule(mesh.cell_type, points_per_direction))
+        elif kind == "nodes of cells":
+            places = elements.nodes(mesh.cell_type, mesh.degree)
+            self._cells(places, np.ones(len(places)))
         elif kind == "facets":
             self._facets(mesh.facets(boundary), points_per_direction)
         else:
             raise ValueError(f"no such integration domain: {name!r}")
 
     # -- construction -------------------------------------------------------------------
-    def _cells(self, n: int) -> None:
+    def _cells(self, points: Array, w: Array) -> None:
         mesh = self.mesh
-        points, w = quadrature.rule(mesh.cell_type, n)
         self.cells = np.arange(len(mesh.cells), dtype=np.int32)
         self.variant = np.zeros(len(mesh.cells), dtype=np.int32)
         self._points = points[None]

@@ -1,0 +1,234 @@
+"""Scalars a tribologist asks for, from a solved model: loads, friction, contact, flows, balances.
+
+Definitions: de Boer et al. 2020, Eqs. 9-14 (flows, loads), 16-19 (friction), 20-22 (lengths).
+All collective; results in SI, the same on every rank.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from porolub.fem.domains import Domain
+from porolub.fem.points import Points
+from porolub.laws.lubricant import film_thickness
+from porolub.solve.model import FACET_POINTS, Model
+from porolub.terms.film import Film
+
+Array = NDArray[np.float64]
+BULK = {"pores", "carry", "streamline stabilisation", "storage"}
+
+
+class Derived:
+    """Evaluates a state; ``local`` is the physical local vector."""
+
+    def __init__(self, model: Model, x: PETSc.Vec) -> None:
+        self.model, self.x = model, x
+        self.comm = model.mesh.comm
+        self.local = model.system.physical(model.dofs.to_local(x))
+        self.film = next((t for t in model.system.terms if isinstance(t, Film)), None)
+        self.surface = None
+        if model.lubricated is not None:
+            domain = Domain(f"facets:{model.lubricated}", model.mesh, FACET_POINTS)
+            self.surface = self.at(domain)
+            self.nodes = model.mesh.boundary_nodes(model.lubricated)
+            self.mine = self.nodes[model.mesh.owned[self.nodes]]
+
+    def at(self, domain: Domain) -> Points:
+        finite = self.model.system.finite
+        return Points(domain, self.model.dofs, self.local, slice(None), finite)
+
+    def total(self, value: float) -> float:
+        return float(self.comm.allreduce(float(value)))
+
+    def extreme(self, values: Array, largest: bool) -> float:
+        op, start = (MPI.MAX, -np.inf) if largest else (MPI.MIN, np.inf)
+        found = values.max(initial=start) if largest else values.min(initial=start)
+        return float(self.comm.allreduce(float(found), op=op))
+
+    # -- nodal values on the mesh's nodes -------------------------------------------------
+    def nodal(self, name: str) -> Array:
+        """(nnode, components) of a field, 0 where it does not live."""
+        f = self.model.dofs.fields[name]
+        out = np.zeros((len(self.model.mesh.coordinates), f.components))
+        out[self.model.dofs.nodes[name]] = self.model.dofs.field(name, self.local)
+        return out
+
+    def gap(self) -> Array:
+        """(nnode,) gap to the plane, scaled (of use on the lubricated surface only)."""
+        plane, mesh = self.model.plane, self.model.mesh
+        assert plane is not None
+        places = mesh.coordinates + (self.nodal("u") if "u" in self.model.dofs.fields else 0.0)
+        return plane.offset - places @ np.asarray(plane.toward) - self.approach()
+
+    def approach(self) -> float:
+        if "v0" in self.model.dofs.fields:
+            return self.model.dofs.scalar_value("v0", self.x)
+        return self.model.operation.approach
+
+    def arc(self) -> Array:
+        """(nnode,) signed arc position along the lubricated surface from its middle, scaled."""
+        mesh = self.model.mesh
+        if mesh.shape is None:
+            return mesh.coordinates[:, 0]
+        return (mesh.logical(mesh.coordinates)[:, 0] - 0.5) * mesh.shape.length
+
+    # -- groups of summary keys -------------------------------------------------------------
+    def loads(self) -> dict[str, float]:
+        s, model = self.model.scales, self.model
+        solid = fluid = 0.0
+        if "l" in model.dofs.fields:
+            solid = self.total(self.nodal("l")[self.mine, 0] @ model.nodal_weights[self.mine])
+        if self.surface is not None and "p" in model.dofs.fields:
+            fluid = self.total((self.surface.weights * self.surface.value("p")).sum())
+        total = solid + fluid
+        target = model.operation.force
+        error = abs(total - target) / abs(target) if target else None
+        ratio = fluid / solid if solid > 0 else None
+        return {"load_total": total * s.force, "load_solid": solid * s.force,
+                "load_fluid": fluid * s.force, "load_ratio": ratio,
+                "load_balance_error": error}
+
+    def friction(self, loads: dict[str, float]) -> dict[str, float | None]:
+        """mu = (mu_s L_s + T_f) / (L_s + L_f); the fluid's part from the film's shear stress."""
+        contact = self.model.scene.contact
+        solid = (contact.friction if contact is not None else 0.0) * loads["load_solid"]
+        fluid = 0.0
+        if self.film is not None:
+            at = self.surface
+            h, _ = film_thickness(self.film.plane.gap(at))
+            U = self.film.operation.entrainment(at.position, at.normal)
+            speed = np.linalg.norm(U, axis=-1)
+            along = U / np.where(speed > 0, speed, 1.0)[..., None]
+            slope = np.einsum("...d,...d->...", at.grad("p"), along)
+            stress = self.film.law.shear_stress(h, slope, speed)
+            fluid = self.total((at.weights * stress).sum()) * self.model.scales.force
+        total = loads["load_total"]
+        return {"friction_coefficient": (solid + fluid) / total if total else None,
+                "friction_fluid": fluid / loads["load_fluid"] if loads["load_fluid"] else None}
+
+    def contact(self) -> dict[str, float | None]:
+        model, length = self.model, self.model.scales.length
+        out: dict[str, float | None] = dict.fromkeys(
+            ("approach", "film_min", "contact_length", "contact_left", "contact_right",
+             "penetration_length", "contact_pressure_max"))
+        if self.surface is None:
+            return out
+        radius = getattr(model.scene.geometry, "outer_radius", None)
+        v0 = self.approach() * length
+        gap = np.maximum(self.gap()[self.mine], 0.0)
+        out |= {"approach": v0, "film_min": self.extreme(gap, False) * length}
+        if radius:
+            out["penetration_length"] = 2.0 * np.sqrt(v0 * (2 * radius - v0)) if v0 > 0 else 0.0
+        if "l" not in model.dofs.fields:
+            return out
+        pressure = self.nodal("l")[self.mine, 0]
+        out["contact_pressure_max"] = self.extreme(pressure, True) * model.scales.pressure
+        s = self.arc()[self.mine][pressure > 1e-12] * length
+        left, right = self.extreme(s, False), self.extreme(s, True)
+        out["contact_length"] = 0.0
+        if left <= right:
+            out |= {"contact_left": left, "contact_right": right}
+            chord = (lambda a: radius * np.sin(a / radius)) if radius else (lambda a: a)
+            out["contact_length"] = float(chord(right) - chord(left))
+        return out
+
+    def exchange(self) -> Array:
+        """(nnode,) V, flow out of the layer per area (scaled), at the pressure nodes.
+
+        The consistent nodal flux: what the fluid mass rows of the layer alone leave over.
+        """
+        model = self.model
+        out = np.zeros(len(model.mesh.coordinates))
+        if model.scene.pores is None:
+            return out
+        r = model.dofs.sum_local(model.system.local_residual(self.local, BULK))
+        nodes = np.intersect1d(self.nodes, model.dofs.nodes["p"])
+        weights = self.pressure_weights()
+        out[nodes] = -r[model.dofs.base["p"][nodes]] / weights[nodes]
+        return out
+
+    def pressure_weights(self) -> Array:
+        """(nnode,) integral of each pressure basis function over the surface."""
+        dofs, domain = self.model.dofs, self.surface.domain
+        values = domain.tables(dofs.fields["p"].degree).value[domain.variant]
+        share = np.einsum("eq,eqi->ei", domain.weights, values).ravel()
+        entity = dofs.entity_dofs("p", domain).ravel()
+        local = np.zeros(dofs.size_local)
+        np.add.at(local, entity[entity >= 0], share[entity >= 0])
+        total = dofs.sum_local(local)
+        weights = np.zeros(len(self.model.mesh.coordinates))
+        weights[dofs.nodes["p"]] = dofs.field("p", total)[:, 0]
+        return weights
+
+    def flows(self) -> dict[str, float | None]:
+        """Mass flows through the surface, left and right of the middle, and their balance."""
+        keys = ("inflow_left", "inflow_right", "outflow_left", "outflow_right")
+        model = self.model
+        if "p" not in model.dofs.fields:
+            return dict.fromkeys((*keys, "mass_balance_error"))
+        out: dict[str, float | None] = dict.fromkeys(keys, 0.0)
+        through = 0.0
+        if self.surface is not None and model.scene.pores is not None:
+            V, s = self.exchange()[self.mine], self.arc()[self.mine]
+            flow = V * self.pressure_weights()[self.mine]
+            unit = model.scales.volume_flow * model.scene.fluid_density
+            left = s < -1e-9
+            for side, part in (("left", left), ("right", ~left)):
+                out[f"inflow_{side}"] = -self.total(np.minimum(flow[part], 0.0).sum()) * unit
+                out[f"outflow_{side}"] = self.total(np.maximum(flow[part], 0.0).sum()) * unit
+            through = self.total(np.abs(flow).sum())
+        out["mass_balance_error"] = self._mass_error(through)
+        return out
+
+    def _mass_error(self, through: float) -> float:
+        """What enters minus what leaves, over all boundaries, relative to the throughput.
+
+        Prescribed-pressure nodes exchange their reaction, material carries a (J - 1) v . n
+        through the ends, and the open surface leaks; in a steady state they sum to zero.
+        """
+        model = self.model
+        dofs, system = model.dofs, model.system
+        r = dofs.sum_local(system.local_residual(self.local))
+        p = np.zeros(dofs.size_local, bool)
+        p[dofs.range["p"]] = True
+        fixed = np.zeros(dofs.size_local, bool)
+        fixed[system.constraints.fixed] = True
+        mine = r[p & fixed & dofs.owned]
+        leaving = -self.total(mine.sum())
+        through += self.total(np.abs(mine).sum())
+        for part in ("carry", "open surface"):
+            flux = self._boundary_flux(part)
+            leaving += flux
+            through += abs(flux)
+        return abs(leaving) / through if through > 0 else 0.0
+
+    def _boundary_flux(self, term_name: str) -> float:
+        """Fluid leaving through a term's boundary integrals (tested with q = 1)."""
+        model = self.model
+        term = next((t for t in model.system.terms if t.name == term_name), None)
+        if term is None:
+            return 0.0
+        only_boundary = model.system.local_residual(self.local, {term_name})
+        return self.total(only_boundary[model.dofs.range["p"]].sum())
+
+    def extremes(self) -> dict[str, float | None]:
+        model = self.model
+        out: dict[str, float | None] = {"pressure_max": None, "pressure_min": None}
+        if "p" in model.dofs.fields:
+            p = model.dofs.field("p", self.local) * model.scales.pressure
+            out = {"pressure_max": self.extreme(p, True), "pressure_min": self.extreme(p, False)}
+        return out
+
+
+def scalars(model: Model, x: PETSc.Vec) -> dict[str, Any]:
+    """All physical scalars of the summary."""
+    d = Derived(model, x)
+    loads = d.loads()
+    return {**loads, **d.friction(loads), **d.contact(), **d.flows(), **d.extremes()}
+
+

@@ -1,0 +1,186 @@
+"""Fields and surface profiles of a solved model as plain SI arrays on rank 0."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from petsc4py import PETSc
+
+from porolub.fem.domains import Domain
+from porolub.laws.lubricant import film_thickness
+from porolub.laws.solid import von_mises_stress
+from porolub.solve.derived import Derived
+from porolub.solve.model import Model
+from porolub.solve.report import FieldData, SurfaceData
+
+Array = NDArray[np.float64]
+
+
+def _to_root(mesh: Any, nodes: NDArray[np.int64], count: int, values: Array) -> Array | None:
+    """Owned nodal rows (nnode, k) collected in natural order on rank 0."""
+    mine = nodes[mesh.owned[nodes]]
+    parts = mesh.comm.gather((mesh.natural_node[mine], values[mine]), root=0)
+    if parts is None:
+        return None
+    out = np.zeros((count, *values.shape[1:]))
+    for index, rows in parts:
+        out[index] = rows
+    return out
+
+
+def nodal_average(d: Derived, domain: Domain, values: Array) -> Array:
+    """(nnode, k) mean over the cells around each node of values (ncell, nn, k) at their nodes."""
+    mesh = d.model.mesh
+    k = values.shape[2]
+    both = np.zeros((len(mesh.coordinates), k + 1))
+    np.add.at(both, mesh.cells.ravel(),
+              np.concatenate([values, np.ones((*values.shape[:2], 1))], axis=2).reshape(-1, k + 1))
+    from porolub.fem.dofs import Dofs, Field
+
+    dofs = Dofs(mesh, [Field("w", k + 1, mesh.degree)])
+    total = dofs.sum_local(both[dofs.nodes["w"]].ravel()).reshape(-1, k + 1)
+    dofs.destroy()
+    out = np.zeros((len(mesh.coordinates), k))
+    out[dofs.nodes["w"]] = total[:, :k] / total[:, k:]
+    return out
+
+
+def gather_fields(model: Model, x: PETSc.Vec) -> FieldData | None:
+    """FieldData on rank 0, None elsewhere. Collective."""
+    mesh, s = model.mesh, model.scales
+    d = Derived(model, x)
+    domain = Domain("nodes of cells", mesh, 0)
+    at = d.at(domain)
+    J = at.deformation.J
+    stress = np.zeros_like(J) if model.law is None else von_mises_stress(model.law, at.deformation)
+    columns = [J[..., None], stress[..., None]]
+    pores = model.scene.pores
+    if pores is not None:
+        mobility = pores.permeability / pores.viscosity / s.mobility
+        g = at.grad("p")
+        if model.scene.conventions.frame == "spatial":
+            g = np.einsum("...ki,...i->...k", at.deformation.inverse_transposed, g)
+        columns.append(-mobility * g)
+    mean = nodal_average(d, domain, np.concatenate(columns, axis=2))
+    everything = np.arange(len(mesh.coordinates))
+    u = d.nodal("u") if "u" in model.dofs.fields else np.zeros_like(mesh.coordinates)
+    pressure = _pressure_everywhere(d) if "p" in model.dofs.fields else np.zeros((len(u), 1))
+    count = mesh.global_node_count
+    table = _to_root(mesh, everything, count,
+                     np.hstack([mesh.coordinates, u, pressure, mean]))
+    cells = mesh.comm.gather((mesh.natural_cell, mesh.natural_node[mesh.cells]), root=0)
+    if table is None:
+        return None
+    connectivity = np.zeros((sum(len(c[0]) for c in cells), mesh.cells.shape[1]), dtype=np.int64)
+    for index, rows in cells:
+        connectivity[index] = rows
+    dim = mesh.dim
+    fluid = "p" in model.dofs.fields
+    return FieldData(
+        nodes=table[:, :dim] * s.length, cells=connectivity, cell_type=mesh.cell_type,
+        degree=mesh.degree, displacement=table[:, dim:2 * dim] * s.length,
+        pressure=table[:, 2 * dim] * s.pressure if fluid else None,
+        jacobian=table[:, 2 * dim + 1], von_mises=table[:, 2 * dim + 2] * s.pressure,
+        flux=table[:, 2 * dim + 3:] * s.speed if pores is not None else None)
+
+
+def _pressure_everywhere(d: Derived) -> Array:
+    """(nnode, 1) pressure at all nodes of the mesh, interpolated where it has no unknown."""
+    model = d.model
+    if model.dofs.fields["p"].degree == model.mesh.degree or model.dofs.fields["p"].support != "body":
+        return d.nodal("p") if model.dofs.fields["p"].degree == model.mesh.degree else _mid_surface(d)
+    domain = Domain("nodes of cells", model.mesh, 0)
+    return nodal_average(d, domain, d.at(domain).value("p")[..., None])
+
+
+def _mid_surface(d: Derived) -> Array:
+    """Surface-only pressure (a film without pores) at the surface's displacement nodes."""
+    return on_surface_nodes(d, d.nodal("p"))
+
+
+def on_surface_nodes(d: Derived, vertex_values: Array) -> Array:
+    """(nnode, k) values given at the surface's vertices, interpolated to its other nodes."""
+    mesh = d.model.mesh
+    nodes = mesh.facets(d.model.lubricated).nodes
+    out = vertex_values.copy()
+    if mesh.degree == 1:
+        return out
+    corners = 2 if mesh.dim == 2 else (4 if mesh.cell_type == "hex" else 3)
+    around = nodes[:, :corners]
+    for k in range(corners if mesh.dim == 3 else 1):
+        pair = around[:, [k, (k + 1) % corners]]
+        out[nodes[:, corners + k]] = vertex_values[pair].mean(axis=1)
+    if mesh.dim == 3 and mesh.cell_type == "hex":
+        out[nodes[:, 8]] = vertex_values[around].mean(axis=1)
+    return _complete(d, nodes, out)
+
+
+def _complete(d: Derived, nodes: NDArray[np.int64], values: Array) -> Array:
+    """Let ranks that own a surface node but none of its facets know its value."""
+    mesh = d.model.mesh
+    from porolub.fem.dofs import Dofs, Field
+
+    k = values.shape[1]
+    dofs = Dofs(mesh, [Field("w", k + 1, mesh.degree)])
+    known = np.zeros((len(values), k + 1))
+    seen = np.unique(nodes)
+    known[seen, :k], known[seen, k] = values[seen], 1.0
+    total = dofs.sum_local(known[dofs.nodes["w"]].ravel()).reshape(-1, k + 1)
+    dofs.destroy()
+    out = np.zeros_like(values)
+    out[dofs.nodes["w"]] = total[:, :k] / np.maximum(total[:, k:], 1.0)
+    return out
+
+
+def gather_surface(model: Model, x: PETSc.Vec) -> SurfaceData | None:
+    """Profiles along the lubricated surface on rank 0. Collective."""
+    if model.lubricated is None:
+        return None
+    d, mesh, s = Derived(model, x), model.mesh, model.scales
+    n = len(mesh.coordinates)
+    columns = np.zeros((n, 7))
+    columns[:, 0], columns[:, 1] = d.arc() * s.length, mesh.coordinates[:, 0] * s.length
+    if "p" in model.dofs.fields:
+        pair = np.column_stack([d.nodal("p")[:, 0], d.exchange()])
+        pair = on_surface_nodes(d, pair) if model.dofs.fields["p"].degree < mesh.degree else pair
+        columns[:, 2], columns[:, 6] = pair[:, 0] * s.pressure, pair[:, 1] * s.speed
+    if "l" in model.dofs.fields:
+        columns[:, 3] = d.nodal("l")[:, 0] * s.pressure
+    gap = np.maximum(d.gap(), 0.0)
+    columns[:, 4] = gap * s.length
+    if d.film is not None:
+        columns[:, 5] = _film_flux(d) * s.volume_flow / s.length ** (mesh.dim - 2)
+    table = _to_root(mesh, d.nodes, mesh.global_node_count, columns)
+    wanted = mesh.comm.gather(mesh.natural_node[d.mine], root=0)
+    if table is None:
+        return None
+    rows = table[np.unique(np.concatenate(wanted))]
+    rows = rows[np.argsort(rows[:, 0], kind="stable")]
+    return SurfaceData(*rows.T)
+
+
+def _film_flux(d: Derived) -> Array:
+    """(nnode,) film flux along the motion (+x), from the facets' points, averaged to the nodes."""
+    film, mesh = d.film, d.model.mesh
+    surface = Domain(f"facets:{d.model.lubricated}", mesh, 2)
+    at = d.at(surface)
+    h, _ = film_thickness(film.plane.gap(at))
+    along = np.zeros(mesh.dim)
+    along[0] = 1.0
+    flux = film.flux(at) @ along
+    values = surface.tables(mesh.degree).value[surface.variant]
+    nodes = mesh.cells[surface.cells]
+    share = np.abs(values) * at.weights[..., None]
+    both = np.zeros((len(mesh.coordinates), 2))
+    for column, q in enumerate((flux, np.ones_like(flux))):
+        np.add.at(both[:, column], nodes.ravel(), (share * q[..., None]).sum(axis=1).ravel())
+    from porolub.fem.dofs import Dofs, Field
+
+    dofs = Dofs(mesh, [Field("w", 2, mesh.degree)])
+    total = dofs.sum_local(both[dofs.nodes["w"]].ravel()).reshape(-1, 2)
+    dofs.destroy()
+    out = np.zeros(len(mesh.coordinates))
+    out[dofs.nodes["w"]] = total[:, 0] / np.maximum(total[:, 1], 1e-300)
+    return out
