@@ -1,8 +1,13 @@
-"""MatSetPreallocationCOO / MatSetValuesCOO, which petsc4py 3.18 does not wrap, through ctypes."""
+"""Matrix values without copies: MatSetValuesCOO and MatSeqAIJGetArray through ctypes.
+
+petsc4py 3.18 wraps neither.
+"""
 
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Iterator
+from contextlib import contextmanager
 from functools import lru_cache
 
 import numpy as np
@@ -10,6 +15,8 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from porolub.errors import SolveError
+
+Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=1)
@@ -20,25 +27,40 @@ def _petsc() -> ctypes.CDLL:
     if not paths:
         raise SolveError("PETSc's shared library is not loaded: is petsc4py installed?")
     lib = ctypes.CDLL(sorted(paths)[0])
-    lib.MatSetPreallocationCOO.argtypes = [ctypes.c_void_p, ctypes.c_ssize_t, ctypes.c_void_p,
-                                           ctypes.c_void_p]
-    lib.MatSetValuesCOO.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_int]
+    pointer = ctypes.c_void_p
+    lib.MatSetPreallocationCOO.argtypes = [pointer, ctypes.c_ssize_t, pointer, pointer]
+    lib.MatSetValuesCOO.argtypes = [pointer, pointer, ctypes.c_int]
+    lib.MatSeqAIJGetArray.argtypes = [pointer, pointer]
+    lib.MatSeqAIJRestoreArray.argtypes = [pointer, pointer]
     return lib
+
+
+def _check(error: int) -> None:
+    if error:
+        raise PETSc.Error(error)
 
 
 def preallocate(mat: PETSc.Mat, rows: NDArray[np.int32], cols: NDArray[np.int32]) -> None:
     """Fix the pattern; entries with a negative row or column are ignored from then on."""
     rows = np.ascontiguousarray(rows, dtype=PETSc.IntType)
     cols = np.ascontiguousarray(cols, dtype=PETSc.IntType)
-    error = _petsc().MatSetPreallocationCOO(mat.handle, len(rows), rows.ctypes.data,
-                                            cols.ctypes.data)
-    if error:
-        raise PETSc.Error(error)
+    _check(_petsc().MatSetPreallocationCOO(mat.handle, len(rows), rows.ctypes.data,
+                                           cols.ctypes.data))
 
 
-def insert(mat: PETSc.Mat, values: NDArray[np.float64]) -> None:
+def insert(mat: PETSc.Mat, values: Array) -> None:
     """Set all values, in the order of the pattern; repeated entries are summed."""
     values = np.ascontiguousarray(values, dtype=np.float64)
-    error = _petsc().MatSetValuesCOO(mat.handle, values.ctypes.data, int(PETSc.InsertMode.INSERT))
-    if error:
-        raise PETSc.Error(error)
+    _check(_petsc().MatSetValuesCOO(mat.handle, values.ctypes.data,
+                                    int(PETSc.InsertMode.INSERT)))
+
+
+@contextmanager
+def values_of(mat: PETSc.Mat, count: int) -> Iterator[Array]:
+    """The stored values (count,) of a sequential AIJ matrix, row by row, to be written."""
+    pointer = ctypes.POINTER(ctypes.c_double)()
+    _check(_petsc().MatSeqAIJGetArray(mat.handle, ctypes.byref(pointer)))
+    try:
+        yield np.ctypeslib.as_array(pointer, (count,))
+    finally:
+        _check(_petsc().MatSeqAIJRestoreArray(mat.handle, ctypes.byref(pointer)))

@@ -7,6 +7,7 @@ rank owns a contiguous block, field by field; scalars (the rigid approach) sit o
 from __future__ import annotations
 
 from dataclasses import dataclass
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from mpi4py import MPI
@@ -62,6 +63,7 @@ class Dofs:
         self.global_numbers = self._number(comm)
         self.size = comm.allreduce(self.count_owned)
         self._scatter: PETSc.Scatter | None = None
+        self._entity_dofs: WeakKeyDictionary = WeakKeyDictionary()  # domain -> field -> numbers
 
     def _field_nodes(self, f: Field) -> NDArray[np.int64]:
         mesh = self.mesh
@@ -147,6 +149,12 @@ class Dofs:
 
     def entity_dofs(self, name: str, domain) -> NDArray[np.int32]:
         """(ne, nn) local number of component 0 at the nodes of each entity, -1 where absent."""
+        known = self._entity_dofs.setdefault(domain, {})
+        if name not in known:
+            known[name] = self._number_entities(name, domain)
+        return known[name]
+
+    def _number_entities(self, name: str, domain) -> NDArray[np.int32]:
         f, base = self.fields[name], self.base[name]
         if f.degree == 0:
             return np.full((len(domain), 1), base[0], dtype=np.int32)

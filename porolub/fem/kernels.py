@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import importlib.util
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,7 @@ from porolub.errors import SolveError
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
+Side = tuple[Array, bool, int, int]  # table, is gradient, nodes, components
 
 
 def _load() -> ctypes.CDLL:
@@ -25,10 +27,12 @@ def _load() -> ctypes.CDLL:
 
 
 _lib = _load()
-_MAX_NODES = 27
 
 
-def _ptr(a: NDArray[np.generic]) -> ctypes.c_void_p:
+def _ptr(a: NDArray[Any]) -> Any:
+    """Address of a C-contiguous array (the buffer protocol is the quickest way to it)."""
+    if a.flags.writeable and a.size:
+        return ctypes.byref(ctypes.c_char.from_buffer(a))
     if not a.flags.c_contiguous:
         raise ValueError("kernel arrays must be C-contiguous")
     return ctypes.c_void_p(a.ctypes.data)
@@ -38,10 +42,9 @@ def evaluate(table: Array, grad: bool, variant: Ints, inverse: Array, dofs: Ints
              x: Array) -> Array:
     """Field values (ne, nq, ncomp) or gradients (ne, nq, ncomp, dim) from the local vector x."""
     ne, nq, dim = inverse.shape[:3]
-    nn = dofs.shape[1]
     out = np.empty((ne, nq, ncomp, dim) if grad else (ne, nq, ncomp))
-    _lib.pl_evaluate(ne, nq, dim, nn, ncomp, int(grad), _ptr(table), _ptr(variant),
-                     _ptr(inverse), _ptr(dofs), _ptr(x), _ptr(out))
+    _lib.pl_evaluate(ne, nq, dim, len(table), dofs.shape[1], ncomp, int(grad), _ptr(table),
+                     _ptr(variant), _ptr(inverse), _ptr(dofs), _ptr(x), _ptr(out))
     return out
 
 
@@ -49,17 +52,46 @@ def residual(table: Array, grad: bool, variant: Ints, inverse: Array, weights: A
              dofs: Ints, ncomp: int, r: Array) -> None:
     """Add the integral of f against test values or gradients to the local vector r."""
     ne, nq, dim = inverse.shape[:3]
-    _lib.pl_residual(ne, nq, dim, dofs.shape[1], ncomp, int(grad), _ptr(table), _ptr(variant),
-                     _ptr(inverse), _ptr(weights), _ptr(f), _ptr(dofs), _ptr(r))
+    _lib.pl_residual(ne, nq, dim, len(table), dofs.shape[1], ncomp, int(grad), _ptr(table),
+                     _ptr(variant), _ptr(inverse), _ptr(weights), _ptr(f), _ptr(dofs), _ptr(r))
 
 
-def matrix(test: tuple[Array, bool, int, int], trial: tuple[Array, bool, int, int],
-           variant: Ints, inverse: Array, weights: Array, g: Array, out: Array) -> None:
-    """Add the integral of test . g . trial to element matrices out (ne, ci, ni, cj, nj).
+def matrix_buffer(entities: int, test: tuple[int, int], trial: tuple[int, int]) -> Array:
+    """Room for element matrices (entities, test nodes, padded row); sides are (nodes, comps)."""
+    (ni, ci), (nj, cj) = test, trial
+    return np.zeros((entities, ni, _lib.pl_padded(ci * cj * nj)))
 
-    ``test`` and ``trial`` are (table, is gradient, nodes, components).
-    """
+
+def matrix(test: Side, trial: Side, variant: Ints, inverse: Array, weights: Array, g: Array,
+           out: Array, add: bool) -> None:
+    """Put (or add) the integral of test . g . trial into element matrices ``out``."""
     ne, nq, dim = inverse.shape[:3]
     (ti, gi, ni, ci), (tj, gj, nj, cj) = test, trial
-    _lib.pl_matrix(ne, nq, dim, ni, ci, int(gi), _ptr(ti), nj, cj, int(gj), _ptr(tj),
-                   _ptr(variant), _ptr(inverse), _ptr(weights), _ptr(g), _ptr(out))
+    _lib.pl_matrix(ne, nq, dim, len(ti), ni, ci, int(gi), _ptr(ti), nj, cj, int(gj), _ptr(tj),
+                   _ptr(variant), _ptr(inverse), _ptr(weights), _ptr(g), int(add), _ptr(out))
+
+
+def rotate(entities: Ints, frame_of: Ints, frames: Array, on_trial: bool, test: tuple[int, int],
+           trial: tuple[int, int], out: Array) -> None:
+    """K <- R^T K or K R in place; frame_of (len(entities), nodes) numbers the frames, -1: none."""
+    (ni, ci), (nj, cj) = test, trial
+    _lib.pl_rotate(len(entities), _ptr(entities), frames.shape[-1], _ptr(frame_of), _ptr(frames),
+                   int(on_trial), ni, ci, cj, nj, _ptr(out))
+
+
+def scatter(element_matrices: Array, slots: Ints, values: Array) -> None:
+    """values[slots] += element matrices; slots (ne, test nodes, row), -1 is dropped."""
+    ne, ni, n = slots.shape
+    _lib.pl_scatter(ne, ni, n, _ptr(element_matrices), _ptr(slots), _ptr(values))
+
+
+def slots(rows: Ints, cols: Ints, indptr: Ints, indices: Ints) -> Ints:
+    """Position (ne, rows, cols) of each entity entry in a CSR pattern sorted by column, or -1.
+
+    rows (ne, nr) and cols (ne, nc) with -1 where absent; present pairs must be in the pattern.
+    """
+    ne, nr = rows.shape
+    out = np.empty((ne, nr, cols.shape[1]), dtype=np.int32)
+    _lib.pl_slots(ne, nr, cols.shape[1], _ptr(rows), _ptr(cols), _ptr(indptr), _ptr(indices),
+                  _ptr(out))
+    return out

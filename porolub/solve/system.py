@@ -6,31 +6,24 @@ block and no loop.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Iterator
 
 import numpy as np
+from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from porolub.fem import coo, kernels
+from porolub.fem import kernels
+from porolub.fem.blocks import Block, Rotations, entity_numbers
 from porolub.fem.constraints import Constraints
 from porolub.fem.dofs import Dofs, Field
 from porolub.fem.domains import Domain
+from porolub.fem.pattern import Pattern
 from porolub.fem.points import Integrand, Points
 from porolub.terms.term import Part, Term
 
 Array = NDArray[np.float64]
-CHUNK = 256  # entities at a time: pointwise arrays stay in cache
-
-
-@dataclass
-class BlockPlan:
-    """Where one (test, trial) block of a domain stands in the COO value array."""
-
-    start: int
-    stop: int
-    shape: tuple[int, ...]
-    rotations: dict[str, list[tuple[int, NDArray[np.int64], Array]]] = field(default_factory=dict)
+BATCH = 4608  # points at a time: pointwise arrays and element matrices stay in cache
 
 
 def union_of_fields(terms: list[Term]) -> list[Field]:
@@ -66,8 +59,8 @@ class System:
         self._rotated_dofs = self._rotation_dofs()
         self._free = np.ones(dofs.size_local, bool)
         self._free[constraints.fixed] = False
-        self._plans: dict[str, dict[tuple[str, str], BlockPlan]] = {}
-        self._values: Array | None = None
+        self._pattern: Pattern | None = None
+        self._blocks: dict[str, dict[tuple[str, str], Block]] = {}
         self.lowest_jacobian = 1.0
         self.previous: Array | None = None  # physical local vector at the start of a step
 
@@ -99,29 +92,34 @@ class System:
         first = x.getOwnershipRange()[0]
         x.array[d.global_numbers[c.fixed[own]] - first] = c.values[own]
 
-    # -- residual -----------------------------------------------------------------------
-    def _points(self, name: str, local: Array):
+    # -- assembly -----------------------------------------------------------------------
+    @staticmethod
+    def _batch(domain: Domain) -> int:
+        return max(1, BATCH // domain.weights.shape[1])
+
+    def _points(self, name: str, local: Array) -> Iterator[Points]:
         domain = self.domains[name]
-        for start in range(0, len(domain), CHUNK):
-            yield Points(domain, self.dofs, local, slice(start, start + CHUNK), self.finite,
-                         self.previous)
+        step = self._batch(domain)
+        for start in range(0, len(domain), step):
+            rows = slice(start, min(start + step, len(domain)))
+            yield Points(domain, self.dofs, local, rows, self.finite, self.previous)
 
-    def local_residual(self, x: Array, only: set[str] | None = None) -> Array:
-        """Cartesian residual (size_local,) of this rank's entities, constraints not applied.
-
-        ``x`` is the physical local vector; ``only`` limits to terms of these names.
-        """
-        r = np.zeros(self.dofs.size_local)
+    def _assemble(self, x: Array, r: Array | None, values: Array | None,
+                  only: set[str] | None = None) -> None:
+        """One pass over the points: adds to the local residual, to the matrix values, or both."""
         for name, parts in self._selected(only).items():
-            domain = self.domains[name]
+            blocks = self._blocks[name] if values is not None else {}
+            if r is None and not blocks:
+                continue
             for at in self._points(name, x):
-                out = Integrand(jacobian=False)
+                out = Integrand(jacobian=bool(blocks))
                 for part in parts:
                     part.add(at, out)
-                self._watch(name, at)
-                for (fieldname, op), f in out.f.items():
-                    self._contract_residual(domain, at.rows, fieldname, op, f, r)
-        return r
+                if r is not None:
+                    self._watch(name, at)
+                    self._contract_residual(at, out, r)
+                if values is not None:
+                    self._contract_matrix(at, out, blocks, values)
 
     def _selected(self, only: set[str] | None) -> dict[str, list[Part]]:
         if only is None:
@@ -137,134 +135,109 @@ class System:
         if name == "cells" and at.has("u"):
             self.lowest_jacobian = min(self.lowest_jacobian, float(at.deformation.J.min()))
 
-    def _contract_residual(self, domain: Domain, rows: slice, name: str, op: bool, f: Array,
-                           r: Array) -> None:
-        fld = self.dofs.fields[name]
-        tables = domain.tables(fld.degree)
-        kernels.residual(tables.gradient if op else tables.value, op, domain.variant[rows],
-                         domain.inverse[rows], domain.weights[rows], np.ascontiguousarray(f),
-                         self.dofs.entity_dofs(name, domain)[rows], fld.components, r)
+    def _contract_residual(self, at: Points, out: Integrand, r: Array) -> None:
+        d, rows = at.domain, at.rows
+        for (name, op), f in out.f.items():
+            table, _, _, components = self._side(d, name, op)
+            kernels.residual(table, op, d.variant[rows], d.inverse[rows], d.weights[rows],
+                             np.ascontiguousarray(f), self.dofs.entity_dofs(name, d)[rows],
+                             components, r)
 
-    def residual(self, X: PETSc.Vec, out: PETSc.Vec) -> None:
-        """F(x), with x - value in constrained rows.  Sets ``lowest_jacobian`` (all ranks)."""
-        stored = self.dofs.to_local(X)
-        self.lowest_jacobian = np.inf
-        r = self.stored(self.local_residual(self.physical(stored)))
-        c = self.constraints
-        r[c.fixed] = np.where(self.dofs.owned[c.fixed], stored[c.fixed] - c.values, 0.0)
-        self.dofs.add_to_global(r, out)
-        comm = self.dofs.mesh.comm
-        self.lowest_jacobian = comm.allreduce(self.lowest_jacobian, op=_min())
+    def _contract_matrix(self, at: Points, out: Integrand, blocks: dict[tuple[str, str], Block],
+                         values: Array) -> None:
+        d, rows = at.domain, at.rows
+        filled: set[tuple[str, str]] = set()
+        for ((test, top), (trial, rop)), g in out.g.items():
+            key = (test, trial)
+            if key not in blocks:
+                raise RuntimeError(f"undeclared block {key} on {d.name}")
+            kernels.matrix(self._side(d, test, top), self._side(d, trial, rop), d.variant[rows],
+                           d.inverse[rows], d.weights[rows], np.ascontiguousarray(g),
+                           blocks[key].matrices, add=key in filled)
+            filled.add(key)
+        for key in filled:
+            blocks[key].insert(rows, values)
 
-    # -- Jacobian -----------------------------------------------------------------------
-    def create_matrix(self) -> PETSc.Mat:
-        """Matrix with the union pattern of all declared blocks; constrained rows are diagonal."""
-        rows, cols, position = [], [], 0
-        for name, parts in self.parts.items():
-            domain, plans = self.domains[name], {}
-            for test, trial in sorted({b for part in parts for b in part.blocks}):
-                i, j = self._entity_numbers(test, domain), self._entity_numbers(trial, domain)
-                ne = len(domain)
-                shape = (ne, *i.shape[1:], *j.shape[1:])
-                size = int(np.prod(shape))
-                rows.append(np.broadcast_to(i[:, :, :, None, None], shape).ravel())
-                cols.append(np.broadcast_to(j[:, None, None], shape).ravel())
-                plans[test, trial] = BlockPlan(position, position + size, shape,
-                                               self._plan_rotations(test, trial, domain))
-                position += size
-            self._plans[name] = plans
-        diagonal = self._diagonal_rows()
-        rows.append(diagonal)
-        cols.append(diagonal)
-        self._values = np.zeros(position + len(diagonal))
-        self._values[position:] = 1.0
-        n = (self.dofs.count_owned, self.dofs.size)
-        mat = PETSc.Mat().create(comm=self.dofs.mesh.comm)
-        mat.setSizes((n, n))
-        mat.setType("aij")
-        mat.setUp()
-        coo.preallocate(mat, np.concatenate(rows), np.concatenate(cols))
-        return mat
-
-    def _diagonal_rows(self) -> NDArray[np.int32]:
-        """Constrained owned rows, and every owned row once so the diagonal exists."""
-        d = self.dofs
-        fixed = self.constraints.fixed
-        return d.global_numbers[fixed[d.owned[fixed]]]
-
-    def _entity_numbers(self, name: str, domain: Domain) -> NDArray[np.int32]:
-        """(ne, components, nodes) global numbers, -1 where absent or constrained."""
-        base = self.dofs.entity_dofs(name, domain)
-        dofs = base[:, None, :] + np.arange(self.dofs.fields[name].components)[None, :, None]
-        present = np.broadcast_to(base[:, None, :] >= 0, dofs.shape)
-        number = np.where(self._free, self.dofs.global_numbers, -1)
-        return np.where(present, number[np.where(present, dofs, 0)], -1).astype(np.int32)
-
-    def _plan_rotations(self, test: str, trial: str, domain: Domain) -> dict:
-        """For each side that is ``u``: (node slot, entities, frames) of rotated nodes."""
-        plan: dict[str, list[tuple[int, NDArray[np.int64], Array]]] = {}
-        if not len(self.constraints.rotated) or "u" not in (test, trial):
-            return plan
-        lookup = np.full(self.dofs.size_local + 1, -1, dtype=np.int64)
-        lookup[self._rotated_dofs[:, 0]] = np.arange(len(self._rotated_dofs))
-        which = lookup[self.dofs.entity_dofs("u", domain)]  # -1 dof reads the last, unused slot
-        slots = []
-        for slot in range(which.shape[1]):
-            entities = np.flatnonzero(which[:, slot] >= 0)
-            if len(entities):
-                slots.append((slot, entities, self.constraints.frame[which[entities, slot]]))
-        for side, name in (("test", test), ("trial", trial)):
-            if name == "u" and slots:
-                plan[side] = slots
-        return plan
-
-    def jacobian(self, X: PETSc.Vec, mat: PETSc.Mat) -> None:
-        """dF/dx into a matrix made by ``create_matrix``."""
-        if self._values is None:
-            raise RuntimeError("create_matrix first")
-        x = self.physical(self.dofs.to_local(X))
-        for name, parts in self.parts.items():
-            plans = self._plans[name]
-            if not plans:
-                continue
-            domain = self.domains[name]
-            blocks = {}
-            for key, plan in plans.items():
-                blocks[key] = self._values[plan.start:plan.stop].reshape(plan.shape)
-                blocks[key][...] = 0.0
-            for at in self._points(name, x):
-                out = Integrand(jacobian=True)
-                for part in parts:
-                    part.add(at, out)
-                for ((test, top), (trial, rop)), g in out.g.items():
-                    if (test, trial) not in blocks:
-                        raise RuntimeError(f"undeclared block {(test, trial)} on {name}")
-                    kernels.matrix(self._side(domain, test, top), self._side(domain, trial, rop),
-                                   domain.variant[at.rows], domain.inverse[at.rows],
-                                   domain.weights[at.rows], np.ascontiguousarray(g),
-                                   blocks[test, trial][at.rows])
-            for key, plan in plans.items():
-                self._rotate(blocks[key], plan)
-        coo.insert(mat, self._values)
-
-    def _side(self, domain: Domain, name: str, op: bool) -> tuple[Array, bool, int, int]:
+    def _side(self, domain: Domain, name: str, op: bool) -> kernels.Side:
         f = self.dofs.fields[name]
         tables = domain.tables(f.degree)
         table = tables.gradient if op else tables.value
         return table, op, table.shape[-1], f.components
 
-    @staticmethod
-    def _rotate(block: Array, plan: BlockPlan) -> None:
-        """K <- R^T K R at rotated nodes; block (ne, ci, ni, cj, nj)."""
-        for slot, entities, frame in plan.rotations.get("test", []):
-            part = block[entities, :, slot]
-            block[entities, :, slot] = np.einsum("eki,ek...->ei...", frame, part)
-        for slot, entities, frame in plan.rotations.get("trial", []):
-            part = block[entities, ..., slot]
-            block[entities, ..., slot] = np.einsum("eabk,ekj->eabj", part, frame)
+    # -- residual and Jacobian ----------------------------------------------------------
+    def local_residual(self, x: Array, only: set[str] | None = None) -> Array:
+        """Cartesian residual (size_local,) of this rank's entities, constraints not applied.
 
+        ``x`` is the physical local vector; ``only`` limits to terms of these names.
+        """
+        r = np.zeros(self.dofs.size_local)
+        self._assemble(x, r, None, only)
+        return r
 
-def _min():
-    from mpi4py import MPI
+    def residual(self, X: PETSc.Vec, out: PETSc.Vec) -> None:
+        """F(x), with x - value in constrained rows.  Sets ``lowest_jacobian`` (all ranks)."""
+        self._evaluate(X, out, None)
 
-    return MPI.MIN
+    def jacobian(self, X: PETSc.Vec, mat: PETSc.Mat) -> None:
+        """dF/dx into a matrix made by ``create_matrix``."""
+        self._evaluate(X, None, mat)
+
+    def residual_and_jacobian(self, X: PETSc.Vec, out: PETSc.Vec, mat: PETSc.Mat) -> None:
+        """Both at the same state in one pass: fields and laws are evaluated once."""
+        self._evaluate(X, out, mat)
+
+    def _evaluate(self, X: PETSc.Vec, out: PETSc.Vec | None, mat: PETSc.Mat | None) -> None:
+        stored = self.dofs.to_local(X)
+        x = self.physical(stored)
+        r = None if out is None else np.zeros(self.dofs.size_local)
+        if r is not None:
+            self.lowest_jacobian = np.inf
+        if mat is None:
+            self._assemble(x, r, None)
+        else:
+            if self._pattern is None:
+                raise RuntimeError("create_matrix first")
+            with self._pattern.values(mat) as values:
+                self._assemble(x, r, values)
+                values[self._pattern.diagonal] = 1.0
+        if r is not None and out is not None:
+            self._finish_residual(stored, r, out)
+
+    def _finish_residual(self, stored: Array, r: Array, out: PETSc.Vec) -> None:
+        r = self.stored(r)
+        c = self.constraints
+        r[c.fixed] = np.where(self.dofs.owned[c.fixed], stored[c.fixed] - c.values, 0.0)
+        self.dofs.add_to_global(r, out)
+        self.lowest_jacobian = self.dofs.mesh.comm.allreduce(self.lowest_jacobian, op=MPI.MIN)
+
+    # -- matrix -------------------------------------------------------------------------
+    def create_matrix(self) -> PETSc.Mat:
+        """Matrix with the union pattern of all declared blocks; constrained rows are diagonal."""
+        if self._pattern is None:
+            spans = {(name, *block): self._span(name, *block)
+                     for name, parts in self.parts.items()
+                     for block in sorted({b for part in parts for b in part.blocks})}
+            fixed = self.constraints.fixed
+            own = fixed[self.dofs.owned[fixed]].astype(np.int32)
+            self._pattern = Pattern(self.dofs, list(spans.values()), own)
+            self._blocks = {name: {} for name in self.parts}
+            for (name, test, trial), span in spans.items():
+                slots = self._pattern.slots(*span)
+                self._blocks[name][test, trial] = self._block(name, test, trial, slots)
+        return self._pattern.create()
+
+    def _span(self, name: str, test: str, trial: str) -> tuple[NDArray[np.int32], ...]:
+        domain = self.domains[name]
+        return (entity_numbers(self.dofs, test, domain, self._free),
+                entity_numbers(self.dofs, trial, domain, self._free, across=True))
+
+    def _block(self, name: str, test: str, trial: str, slots: NDArray[np.int32]) -> Block:
+        domain, sides, rotated = self.domains[name], [], {}
+        for side, field in (("test", test), ("trial", trial)):
+            nodes = self.dofs.entity_dofs(field, domain).shape[1]
+            sides.append((nodes, self.dofs.fields[field].components))
+            if field == "u" and len(self.constraints.rotated):
+                rotated[side] = Rotations.of(self.dofs, domain, self.constraints)
+        (ni, ci), (nj, cj) = sides
+        slots = slots.reshape(len(domain), ni, ci * cj * nj)
+        return Block(*sides, slots, self._batch(domain), rotated)
