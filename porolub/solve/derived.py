@@ -70,6 +70,11 @@ class Derived:
             return self.model.dofs.scalar_value("v0", self.x)
         return self.model.operation.approach
 
+    def contact_pressure(self) -> Array:
+        """(nnode,) contact pressure, exactly zero at open nodes (scaled)."""
+        pressure = self.nodal("l")[:, 0]
+        return np.where(pressure > self.gap(), pressure, 0.0)
+
     def arc(self) -> Array:
         """(nnode,) signed arc position along the lubricated surface from its middle, scaled."""
         mesh = self.model.mesh
@@ -126,9 +131,9 @@ class Derived:
             out["penetration_length"] = 2.0 * np.sqrt(v0 * (2 * radius - v0)) if v0 > 0 else 0.0
         if "l" not in model.dofs.fields:
             return out
-        pressure = self.nodal("l")[self.mine, 0]
+        pressure = self.contact_pressure()[self.mine]
         out["contact_pressure_max"] = self.extreme(pressure, True) * model.scales.pressure
-        s = self.arc()[self.mine][pressure > 1e-12] * length
+        s = self.arc()[self.mine][pressure > 0.0] * length
         left, right = self.extreme(s, False), self.extreme(s, True)
         out["contact_length"] = 0.0
         if left <= right:

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from porolub.fem.dofs import Dofs, Field
 from porolub.fem.domains import Domain
-from porolub.laws.lubricant import film_thickness
 from porolub.laws.solid import von_mises_stress
 from porolub.solve.derived import Derived
 from porolub.solve.model import Model
@@ -37,8 +37,6 @@ def nodal_average(d: Derived, domain: Domain, values: Array) -> Array:
     both = np.zeros((len(mesh.coordinates), k + 1))
     np.add.at(both, mesh.cells.ravel(),
               np.concatenate([values, np.ones((*values.shape[:2], 1))], axis=2).reshape(-1, k + 1))
-    from porolub.fem.dofs import Dofs, Field
-
     dofs = Dofs(mesh, [Field("w", k + 1, mesh.degree)])
     total = dofs.sum_local(both[dofs.nodes["w"]].ravel()).reshape(-1, k + 1)
     dofs.destroy()
@@ -120,8 +118,6 @@ def on_surface_nodes(d: Derived, vertex_values: Array) -> Array:
 def _complete(d: Derived, nodes: NDArray[np.int64], values: Array) -> Array:
     """Let ranks that own a surface node but none of its facets know its value."""
     mesh = d.model.mesh
-    from porolub.fem.dofs import Dofs, Field
-
     k = values.shape[1]
     dofs = Dofs(mesh, [Field("w", k + 1, mesh.degree)])
     known = np.zeros((len(values), k + 1))
@@ -147,40 +143,47 @@ def gather_surface(model: Model, x: PETSc.Vec) -> SurfaceData | None:
         pair = on_surface_nodes(d, pair) if model.dofs.fields["p"].degree < mesh.degree else pair
         columns[:, 2], columns[:, 6] = pair[:, 0] * s.pressure, pair[:, 1] * s.speed
     if "l" in model.dofs.fields:
-        columns[:, 3] = d.nodal("l")[:, 0] * s.pressure
+        columns[:, 3] = d.contact_pressure() * s.pressure
     gap = np.maximum(d.gap(), 0.0)
     columns[:, 4] = gap * s.length
     if d.film is not None:
-        columns[:, 5] = _film_flux(d) * s.volume_flow / s.length ** (mesh.dim - 2)
+        columns[:, 5] = _film_rows(d) * s.volume_flow / s.length ** (mesh.dim - 2)
     table = _to_root(mesh, d.nodes, mesh.global_node_count, columns)
     wanted = mesh.comm.gather(mesh.natural_node[d.mine], root=0)
+    corners = mesh.comm.gather(mesh.natural_node[d.mine[_carries_pressure(d)]], root=0)
     if table is None:
         return None
+    if d.film is not None:
+        _rows_to_flux(table, np.unique(np.concatenate(corners)))
     rows = table[np.unique(np.concatenate(wanted))]
     rows = rows[np.argsort(rows[:, 0], kind="stable")]
     return SurfaceData(*rows.T)
 
 
-def _film_flux(d: Derived) -> Array:
-    """(nnode,) film flux along the motion (+x), from the facets' points, averaged to the nodes."""
-    film, mesh = d.film, d.model.mesh
-    surface = Domain(f"facets:{d.model.lubricated}", mesh, 2)
-    at = d.at(surface)
-    h, _ = film_thickness(film.plane.gap(at))
-    along = np.zeros(mesh.dim)
-    along[0] = 1.0
-    flux = film.flux(at) @ along
-    values = surface.tables(mesh.degree).value[surface.variant]
-    nodes = mesh.cells[surface.cells]
-    share = np.abs(values) * at.weights[..., None]
-    both = np.zeros((len(mesh.coordinates), 2))
-    for column, q in enumerate((flux, np.ones_like(flux))):
-        np.add.at(both[:, column], nodes.ravel(), (share * q[..., None]).sum(axis=1).ravel())
-    from porolub.fem.dofs import Dofs, Field
+def _carries_pressure(d: Derived) -> NDArray[np.bool_]:
+    return np.isin(d.mine, d.model.dofs.nodes["p"] if "p" in d.model.dofs.fields else [])
 
-    dofs = Dofs(mesh, [Field("w", 2, mesh.degree)])
-    total = dofs.sum_local(both[dofs.nodes["w"]].ravel()).reshape(-1, 2)
-    dofs.destroy()
-    out = np.zeros(len(mesh.coordinates))
-    out[dofs.nodes["w"]] = total[:, 0] / np.maximum(total[:, 1], 1e-300)
+
+def _film_rows(d: Derived) -> Array:
+    """(nnode,) the film's share of the fluid mass rows, summed over ranks (scaled)."""
+    model = d.model
+    out = np.zeros(len(model.mesh.coordinates))
+    r = model.dofs.sum_local(model.system.local_residual(d.local, {"film"}))
+    nodes = np.intersect1d(d.nodes, model.dofs.nodes["p"])
+    out[nodes] = r[model.dofs.base["p"][nodes]]
     return out
+
+
+def _rows_to_flux(table: Array, corners: NDArray[np.int64]) -> None:
+    """Turn column 5 from film rows into film flux, in place (one profile along s).
+
+    Row i of a linear film is Q right of node i minus Q left of it, so the running sum is the
+    conservative mean flux of each element: what the scheme itself transports.
+    """
+    order = corners[np.argsort(table[corners, 0], kind="stable")]
+    flux = np.cumsum(table[order, 5])[:-1]  # mean flux between neighbouring pressure nodes
+    s = table[order, 0]
+    centres = (s[1:] + s[:-1]) / 2.0
+    table[:, 5] = np.interp(table[:, 0], centres, flux)
+
+

@@ -17,6 +17,7 @@ import numpy as np
 from petsc4py import PETSc
 
 from porolub.mesh import build_mesh
+from porolub.solve.derived import Derived
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.report import NewtonRecord
@@ -24,6 +25,7 @@ from porolub.solve.startup import LIFTED, PRESSED_IN, Starter
 from porolub.solve.transfer import Snapshot, restore, snapshot
 
 log = logging.getLogger(__name__)
+EDGES_APART = 0.5  # thicknesses between two places to refine toward
 COARSEST = 80  # elements along the surface on the first mesh, at most
 
 
@@ -162,23 +164,26 @@ class SteadySolver:
 
 
 def contact_edges(model: Model, x: PETSc.Vec) -> tuple[float, ...]:
-    """Arc positions (mesh units) of the two ends of the closed zone; empty without contact.
+    """Arc positions (mesh units) worth fine elements, increasing; empty without a surface.
 
-    Without contact: the place of the thinnest film, where the pressure is steepest.
+    The ends of the closed zone, and the ends of the pressurised zone where they lie apart (a
+    film that carries load ends in its own steep necks).
     """
     dofs, mesh = model.dofs, model.mesh
-    if "l" not in dofs.fields or mesh.shape is None:
+    if mesh.shape is None or model.lubricated is None:
         return ()
-    local = dofs.to_local(x)
-    nodes = dofs.nodes["l"]
-    s = (mesh.logical(mesh.coordinates[nodes])[:, 0] - 0.5) * mesh.shape.length
-    closed = dofs.field("l", local)[:, 0] > 1e-9
-    ends = np.array([-np.inf, -np.inf])
-    if closed.any():
-        ends = np.array([-s[closed].min(), s[closed].max()])
-    from mpi4py import MPI
-
-    mesh.comm.Allreduce(MPI.IN_PLACE, ends, MPI.MAX)
-    if not np.all(np.isfinite(ends)):
-        return ()
-    return (-float(ends[0]), float(ends[1]))
+    d = Derived(model, x)
+    s = d.arc()[d.mine]
+    closed = np.zeros(len(s), bool)
+    if "l" in dofs.fields:
+        closed = d.contact_pressure()[d.mine] > 0.0
+    pressurised = np.zeros(len(s), bool)
+    if "p" in dofs.fields:
+        p = d.nodal("p")[d.mine, 0]
+        pressurised = p > 0.1 * d.extreme(p, True)
+    found: list[float] = []
+    for zone in (closed, pressurised):
+        ends = (d.extreme(s[zone], False), d.extreme(s[zone], True))
+        found += [e for e in ends
+                  if np.isfinite(e) and all(abs(e - f) > EDGES_APART for f in found)]
+    return tuple(sorted(found))

@@ -81,7 +81,7 @@ class Film:
         speed = np.linalg.norm(U, axis=-1)
         s = U / np.where(speed > 0, speed, 1.0)[..., None]
         length = at.domain.length_along(s, at.rows)
-        resists = self.law.conductance(h) + mobility * length + 1e-300
+        resists = self.law.conductance(h) + mobility * length + 1e-30  # its square divides below
         peclet = speed * length**2 / (2.0 * modulus * resists)
         extra = speed * length / 4.0 * upwind_function(peclet)
         slope = self.plane.slope(at, s)

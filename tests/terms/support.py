@@ -32,12 +32,12 @@ def operation(kind: str = "rest", speed: float = 0.0, **others: object) -> Opera
     Here is the only place where tests name the knobs of continuation (such as `rate`).
     """
     settings: dict[str, object] = {"centre": (0.0, meshes.RADIUS, 0.0), "force": 0.8} | others
-    return Operation(kind=kind, speed=speed, **settings)
+    return Operation(kind=kind, speed=speed, **settings)  # type: ignore[arg-type]
 
 
 def plane_below(mesh: Mesh, boundary: str, at: Operation) -> Plane:
     """The rigid plane under an arc, or a slightly tilted one over a flat top."""
-    m = np.array([0.0, -1.0, 0.0]) if boundary == "lubricated" else np.array([0.1, 1.0, 0.05])
+    m = np.array([0.0, -1.0, 0.0]) if boundary == "lubricated" else np.array([0.4, 1.0, 0.2])
     m = m[: mesh.dim] / np.linalg.norm(m[: mesh.dim])
     reach = (mesh.coordinates[mesh.boundary_nodes(boundary)] @ m).max()
     return Plane(tuple(m), float(reach), at)
