@@ -21,11 +21,12 @@ from porolub.solve.derived import Derived
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.report import NewtonRecord
-from porolub.solve.startup import LIFTED, PRESSED_IN, Starter
+from porolub.solve.startup import LIFTED, PRESSED_IN, Starter, StartUp
 from porolub.solve.transfer import Snapshot, restore, snapshot
 
 log = logging.getLogger(__name__)
 EDGES_APART = 0.5  # thicknesses between two places to refine toward
+FAILURES_ALLOWED = 2  # meshes without a steady state before the sequence is given up
 COARSEST = 80  # elements along the surface on the first mesh, at most
 
 
@@ -95,6 +96,7 @@ class SteadySolver:
         data: Snapshot | None = None
         edges: tuple[float, ...] = ()
         levels = levels_of(self.scene)
+        failures = 0
         for number, level in enumerate(levels):
             start = time.perf_counter()
             model = self._model(level, scales, edges)
@@ -105,9 +107,9 @@ class SteadySolver:
             x, result = self._level(model, newton, data, name)
             self.newton_iterations += newton.iterations
             self.linear_iterations += newton.linear_iterations
-            last = number == len(levels) - 1
             newton.destroy()
-            if last or not result.converged and number == len(levels) - 1:
+            failures += not result.converged
+            if number == len(levels) - 1 or failures == FAILURES_ALLOWED:
                 return self._outcome(result, model, x)
             if result.converged:
                 data = snapshot(model, x)
@@ -150,7 +152,7 @@ class SteadySolver:
             settle = False
         if self.scene.pores is not None or self.scene.film is not None:
             log.info("%s: straight Newton failed (%s); starting up in time", name, result.why)
-            result = starter.physical(x, settle)
+            result = starter.physical(x, settle, StartUp(steps=60) if settle else StartUp())
             self.rejected += starter.rejected
         return x, result
 
