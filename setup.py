@@ -48,6 +48,7 @@ class BuildKernels(build_ext):
 setup(
     ext_modules=[
         Extension("porolub.fem._kernels", ["porolub/fem/kernels.c"], libraries=["m"]),
+        Extension("porolub.laws._tensors", ["porolub/laws/tensors.c"], libraries=["m"]),
     ],
     cmdclass={"build_ext": BuildKernels},
 )

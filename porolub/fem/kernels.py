@@ -2,40 +2,17 @@
 
 from __future__ import annotations
 
-import ctypes
-import importlib.util
-from typing import Any
-
 import numpy as np
 from numpy.typing import NDArray
 
-from porolub.errors import SolveError
+from porolub.laws.compiled import load, ptr
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Side = tuple[Array, bool, int, int]  # table, is gradient, nodes, components
 
 
-def _load() -> ctypes.CDLL:
-    spec = importlib.util.find_spec("porolub.fem._kernels")
-    if spec is None or spec.origin is None:
-        raise SolveError(
-            "The compiled kernels (porolub/fem/_kernels) are missing: "
-            "run 'pip install -e .' in the checkout (it needs a C compiler)."
-        )
-    return ctypes.CDLL(spec.origin)
-
-
-_lib = _load()
-
-
-def _ptr(a: NDArray[Any]) -> Any:
-    """Address of a C-contiguous array (the buffer protocol is the quickest way to it)."""
-    if a.flags.writeable and a.size:
-        return ctypes.byref(ctypes.c_char.from_buffer(a))
-    if not a.flags.c_contiguous:
-        raise ValueError("kernel arrays must be C-contiguous")
-    return ctypes.c_void_p(a.ctypes.data)
+_lib = load("porolub.fem._kernels")
 
 
 def evaluate(table: Array, grad: bool, variant: Ints, inverse: Array, dofs: Ints, ncomp: int,
@@ -43,8 +20,8 @@ def evaluate(table: Array, grad: bool, variant: Ints, inverse: Array, dofs: Ints
     """Field values (ne, nq, ncomp) or gradients (ne, nq, ncomp, dim) from the local vector x."""
     ne, nq, dim = inverse.shape[:3]
     out = np.empty((ne, nq, ncomp, dim) if grad else (ne, nq, ncomp))
-    _lib.pl_evaluate(ne, nq, dim, len(table), dofs.shape[1], ncomp, int(grad), _ptr(table),
-                     _ptr(variant), _ptr(inverse), _ptr(dofs), _ptr(x), _ptr(out))
+    _lib.pl_evaluate(ne, nq, dim, len(table), dofs.shape[1], ncomp, int(grad), ptr(table),
+                     ptr(variant), ptr(inverse), ptr(dofs), ptr(x), ptr(out))
     return out
 
 
@@ -52,8 +29,8 @@ def residual(table: Array, grad: bool, variant: Ints, inverse: Array, weights: A
              dofs: Ints, ncomp: int, r: Array) -> None:
     """Add the integral of f against test values or gradients to the local vector r."""
     ne, nq, dim = inverse.shape[:3]
-    _lib.pl_residual(ne, nq, dim, len(table), dofs.shape[1], ncomp, int(grad), _ptr(table),
-                     _ptr(variant), _ptr(inverse), _ptr(weights), _ptr(f), _ptr(dofs), _ptr(r))
+    _lib.pl_residual(ne, nq, dim, len(table), dofs.shape[1], ncomp, int(grad), ptr(table),
+                     ptr(variant), ptr(inverse), ptr(weights), ptr(f), ptr(dofs), ptr(r))
 
 
 def matrix_buffer(entities: int, test: tuple[int, int], trial: tuple[int, int]) -> Array:
@@ -67,22 +44,22 @@ def matrix(test: Side, trial: Side, variant: Ints, inverse: Array, weights: Arra
     """Put (or add) the integral of test . g . trial into element matrices ``out``."""
     ne, nq, dim = inverse.shape[:3]
     (ti, gi, ni, ci), (tj, gj, nj, cj) = test, trial
-    _lib.pl_matrix(ne, nq, dim, len(ti), ni, ci, int(gi), _ptr(ti), nj, cj, int(gj), _ptr(tj),
-                   _ptr(variant), _ptr(inverse), _ptr(weights), _ptr(g), int(add), _ptr(out))
+    _lib.pl_matrix(ne, nq, dim, len(ti), ni, ci, int(gi), ptr(ti), nj, cj, int(gj), ptr(tj),
+                   ptr(variant), ptr(inverse), ptr(weights), ptr(g), int(add), ptr(out))
 
 
 def rotate(entities: Ints, frame_of: Ints, frames: Array, on_trial: bool, test: tuple[int, int],
            trial: tuple[int, int], out: Array) -> None:
     """K <- R^T K or K R in place; frame_of (len(entities), nodes) numbers the frames, -1: none."""
     (ni, ci), (nj, cj) = test, trial
-    _lib.pl_rotate(len(entities), _ptr(entities), frames.shape[-1], _ptr(frame_of), _ptr(frames),
-                   int(on_trial), ni, ci, cj, nj, _ptr(out))
+    _lib.pl_rotate(len(entities), ptr(entities), frames.shape[-1], ptr(frame_of), ptr(frames),
+                   int(on_trial), ni, ci, cj, nj, ptr(out))
 
 
 def scatter(element_matrices: Array, slots: Ints, values: Array) -> None:
     """values[slots] += element matrices; slots (ne, test nodes, row), -1 is dropped."""
     ne, ni, n = slots.shape
-    _lib.pl_scatter(ne, ni, n, _ptr(element_matrices), _ptr(slots), _ptr(values))
+    _lib.pl_scatter(ne, ni, n, ptr(element_matrices), ptr(slots), ptr(values))
 
 
 def slots(rows: Ints, cols: Ints, indptr: Ints, indices: Ints) -> Ints:
@@ -92,6 +69,6 @@ def slots(rows: Ints, cols: Ints, indptr: Ints, indices: Ints) -> Ints:
     """
     ne, nr = rows.shape
     out = np.empty((ne, nr, cols.shape[1]), dtype=np.int32)
-    _lib.pl_slots(ne, nr, cols.shape[1], _ptr(rows), _ptr(cols), _ptr(indptr), _ptr(indices),
-                  _ptr(out))
+    _lib.pl_slots(ne, nr, cols.shape[1], ptr(rows), ptr(cols), ptr(indptr), ptr(indices),
+                  ptr(out))
     return out

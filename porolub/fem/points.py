@@ -6,6 +6,7 @@ of all terms of a domain, so each matrix block is contracted once however many t
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +14,9 @@ from numpy.typing import NDArray
 
 from porolub.fem import kernels
 from porolub.fem.dofs import Dofs
+from porolub.fem.domains import Domain
 from porolub.laws.kinematics import Deformation
+from porolub.laws.tensors import combine
 
 Array = NDArray[np.float64]
 
@@ -28,7 +31,7 @@ class Points:
     (ne, nq, nc, dim).
     """
 
-    def __init__(self, domain, dofs: Dofs, local: Array, rows: slice, finite: bool,
+    def __init__(self, domain: Domain, dofs: Dofs, local: Array, rows: slice, finite: bool,
                  previous: Array | None = None) -> None:
         self.domain, self.dofs, self.local, self.rows = domain, dofs, local, rows
         self.finite = finite
@@ -72,23 +75,43 @@ class Points:
         assert self._previous is not None
         return Points(self.domain, self.dofs, self._previous, self.rows, self.finite)
 
+    def kept(self, name: str, depends_on: object, compute: Callable[[], Array]) -> Array:
+        """An array of these points that depends on no unknown, computed anew only when the
+        value ``depends_on`` has changed; whoever asks for the same name means the same array."""
+        store = self.domain.__dict__.setdefault("_kept", {})
+        key = (name, self.rows.start, self.rows.stop)
+        if key not in store or store[key][0] != depends_on:
+            store[key] = (depends_on, compute())
+        return store[key][1]
+
     def constant(self, array: Array) -> Array:
         """A (dim,) vector or (dim, dim) tensor repeated at every point."""
         return np.broadcast_to(array, (*self.weights.shape, *np.shape(array)))
 
 
 class Integrand:
-    """Sums of pointwise residual fluxes and tangents, keyed by test (and trial) slot."""
+    """Sums of pointwise residual fluxes and tangents, keyed by test (and trial) slot.
+
+    ``weight`` multiplies an array: a number, or one (ne, nq) per point.
+    """
 
     def __init__(self, jacobian: bool) -> None:
         self.wants_jacobian = jacobian
         self.f: dict[Slot, Array] = {}
         self.g: dict[tuple[Slot, Slot], Array] = {}
 
-    def residual(self, field: str, op: bool, array: Array) -> None:
+    def residual(self, field: str, op: bool, array: Array, weight: Array | float = 1.0) -> None:
         key = (field, op)
-        self.f[key] = self.f[key] + array if key in self.f else array
+        self.f[key] = _add(self.f.get(key), array, weight)
 
-    def jacobian(self, test: str, op: bool, trial: str, trial_op: bool, array: Array) -> None:
+    def jacobian(self, test: str, op: bool, trial: str, trial_op: bool, array: Array,
+                 weight: Array | float = 1.0) -> None:
         key = ((test, op), (trial, trial_op))
-        self.g[key] = self.g[key] + array if key in self.g else array
+        self.g[key] = _add(self.g.get(key), array, weight)
+
+
+def _add(total: Array | None, array: Array, weight: Array | float) -> Array:
+    """total + weight array; never in place, since arrays may be shared or kept."""
+    if total is None:
+        return array if np.ndim(weight) == 0 and weight == 1.0 else combine(weight, array)
+    return combine(1.0, total, weight, array)

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from porolub.laws.kinematics import Deformation, crossed, outer
+from porolub.laws import tensors
+from porolub.laws.kinematics import Deformation
 
 Array = NDArray[np.float64]
 
@@ -61,27 +62,23 @@ class NeoHookean:
         return self.bulk + 4.0 * self.shear / 3.0
 
     def _isochoric(self, d: Deformation) -> tuple[Array, Array]:
-        A = self.shear * d.J ** (-2.0 / 3.0)
-        I1 = np.einsum("...ij,...ij->...", d.F, d.F) + (3 - d.dim)
-        return A[..., None, None], I1[..., None, None]
+        """G J^(-2/3) and tr C."""
+        I1 = tensors.inner(d.F, d.F) + (3 - d.dim)
+        return self.shear * d.J ** (-2.0 / 3.0), I1
 
     def stress(self, d: Deformation) -> Array:
-        A, I1 = self._isochoric(d)
-        return (A * (d.F - I1 / 3.0 * d.inverse_transposed)
-                + self.bulk * (d.J - 1.0)[..., None, None] * d.cof)
+        """P = A (F - I1/3 T) + K (J - 1) J T with A = G J^(-2/3), T = F^-T."""
+        (A, I1), J = self._isochoric(d), d.J
+        return tensors.combine(A, d.F, self.bulk * (J - 1.0) * J - A * I1 / 3.0,
+                               d.inverse_transposed)
 
     def tangent(self, d: Deformation) -> Array:
-        A, I1 = self._isochoric(d)
-        A, I1 = A[..., None, None], I1[..., None, None]
-        F, T, one = d.F, d.inverse_transposed, np.eye(d.dim)
-        J = d.J[..., None, None, None, None]
-        FT = outer(F, T)
-        TF = outer(T, F)
-        identity = np.einsum("ik,jl->ijkl", one, one)
-        volumetric = self.bulk * J
-        return (A * (identity - 2.0 / 3.0 * (FT + TF))
-                + (2.0 / 9.0 * A * I1 + volumetric * (2.0 * J - 1.0)) * outer(T, T)
-                + (A * I1 / 3.0 - volumetric * (J - 1.0)) * crossed(T))
+        """dP/dF, by dA = -2/3 A T, dI1 = 2 F, dJ = J T and dT_ij = -T_il T_kj dF_kl."""
+        (A, I1), J = self._isochoric(d), d.J
+        return tensors.tangent(
+            d.F, d.inverse_transposed, one=A, mixed=-2.0 / 3.0 * A,
+            square=2.0 / 9.0 * A * I1 + self.bulk * J * (2.0 * J - 1.0),
+            crossed=A * I1 / 3.0 - self.bulk * J * (J - 1.0))
 
     def energy(self, d: Deformation) -> Array:
         """Strain energy density (...), for tests of the stress."""

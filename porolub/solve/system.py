@@ -23,6 +23,7 @@ from porolub.fem.points import Integrand, Points
 from porolub.terms.term import Part, Term
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int32]
 BATCH = 4608  # points at a time: pointwise arrays and element matrices stay in cache
 
 
@@ -226,18 +227,18 @@ class System:
                 self._blocks[name][test, trial] = self._block(name, test, trial, slots)
         return self._pattern.create()
 
-    def _span(self, name: str, test: str, trial: str) -> tuple[NDArray[np.int32], ...]:
+    def _span(self, name: str, test: str, trial: str) -> tuple[Ints, Ints]:
         domain = self.domains[name]
         return (entity_numbers(self.dofs, test, domain, self._free),
                 entity_numbers(self.dofs, trial, domain, self._free, across=True))
 
-    def _block(self, name: str, test: str, trial: str, slots: NDArray[np.int32]) -> Block:
-        domain, sides, rotated = self.domains[name], [], {}
-        for side, field in (("test", test), ("trial", trial)):
-            nodes = self.dofs.entity_dofs(field, domain).shape[1]
-            sides.append((nodes, self.dofs.fields[field].components))
-            if field == "u" and len(self.constraints.rotated):
-                rotated[side] = Rotations.of(self.dofs, domain, self.constraints)
-        (ni, ci), (nj, cj) = sides
+    def _block(self, name: str, test: str, trial: str, slots: Ints) -> Block:
+        domain, rotated = self.domains[name], {}
+        if "u" in (test, trial) and len(self.constraints.rotated):
+            turned = Rotations.of(self.dofs, domain, self.constraints)
+            rotated = {side: turned for side, field in (("test", test), ("trial", trial))
+                       if field == "u"}
+        ni, nj = (self.dofs.entity_dofs(field, domain).shape[1] for field in (test, trial))
+        ci, cj = (self.dofs.fields[field].components for field in (test, trial))
         slots = slots.reshape(len(domain), ni, ci * cj * nj)
-        return Block(*sides, slots, self._batch(domain), rotated)
+        return Block((ni, ci), (nj, cj), slots, self._batch(domain), rotated)

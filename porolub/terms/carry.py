@@ -14,6 +14,7 @@ import numpy as np
 
 from porolub.fem.dofs import Field
 from porolub.fem.points import GRAD, VALUE, Integrand, Points
+from porolub.laws import tensors
 from porolub.terms.operation import Operation
 from porolub.terms.term import Part
 
@@ -38,10 +39,12 @@ class Carry:
         return [Part("cells", self.transport, blocks), *ends]
 
     def transport(self, at: Points, out: Integrand) -> None:
-        a, v, d = self.biot, self.operation.body_velocity(at.position), at.deformation
-        out.residual("p", GRAD, -a * (d.J - 1.0)[..., None] * v)
+        a, d = self.biot, at.deformation
+        v = at.kept("body velocity", self.operation.motion,
+                    lambda: self.operation.body_velocity(at.position))
+        out.residual("p", GRAD, v, weight=-a * (d.J - 1.0))
         if out.wants_jacobian:
-            out.jacobian("p", GRAD, "u", GRAD, -a * v[..., :, None, None] * d.cof[..., None, :, :])
+            out.jacobian("p", GRAD, "u", GRAD, tensors.outer(v, d.cof), weight=-a)
 
     def end_flux(self, at: Points, out: Integrand) -> None:
         a, d = self.biot, at.deformation

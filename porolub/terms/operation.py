@@ -33,6 +33,11 @@ class Operation:
     friction: float = 1.0
     rate: float = 0.0
 
+    @property
+    def motion(self) -> tuple[object, ...]:
+        """All that the velocities depend on."""
+        return self.kind, self.speed, self.centre, self.direction
+
     def body_velocity(self, X: Array) -> Array:
         """v = Omega e_z x (X - x0), (..., dim); zero unless the body rotates."""
         v = np.zeros_like(X)

@@ -14,6 +14,7 @@ import numpy as np
 
 from porolub.fem.dofs import Field
 from porolub.fem.points import GRAD, VALUE, Integrand, Points
+from porolub.laws import tensors
 from porolub.terms.term import Part
 
 
@@ -39,17 +40,17 @@ class Pores:
     def momentum(self, at: Points, out: Integrand) -> None:
         a, p, d = self.biot, at.value("p"), at.deformation
         B = d.cof if self.spatial else at.constant(np.eye(at.dim))
-        out.residual("u", GRAD, -a * p[..., None, None] * B)
+        out.residual("u", GRAD, B, weight=-a * p)
         if out.wants_jacobian:
-            out.jacobian("u", GRAD, "p", VALUE, -a * B)
+            out.jacobian("u", GRAD, "p", VALUE, B, weight=-a)
             if self.spatial and d.finite:
-                out.jacobian("u", GRAD, "u", GRAD, -a * p[..., None, None, None, None] * d.dcof)
+                out.jacobian("u", GRAD, "u", GRAD, d.dcof, weight=-a * p)
 
     def mass(self, at: Points, out: Integrand) -> None:
         k, g, d = self.mobility, at.grad("p"), at.deformation
-        K = k * d.mobility_tensor if self.spatial else at.constant(k * np.eye(at.dim))
-        out.residual("p", GRAD, np.einsum("...jk,...k->...j", K, g))
+        K = d.mobility_tensor if self.spatial else at.constant(np.eye(at.dim))
+        out.residual("p", GRAD, tensors.apply(K, g), weight=k)
         if out.wants_jacobian:
-            out.jacobian("p", GRAD, "p", GRAD, K)
+            out.jacobian("p", GRAD, "p", GRAD, K, weight=k)
             if self.spatial and d.finite:
-                out.jacobian("p", GRAD, "u", GRAD, k * d.mobility_flux_derivative(g))
+                out.jacobian("p", GRAD, "u", GRAD, d.mobility_flux_derivative(g), weight=k)
