@@ -24,6 +24,7 @@ from tests.fem import meshes
 Array = NDArray[np.float64]
 WAVES = np.array([[1.3, 0.7, -0.5], [-0.6, 1.1, 0.9], [0.8, -0.4, 1.2]])  # of u, per component
 SHIFTS = np.array([0.3, 1.1, 2.0])
+STRAIN = np.array([[0.11, -0.07, 0.05], [0.04, -0.16, 0.08], [-0.06, 0.03, 0.09]])
 
 
 def operation(kind: str = "rest", speed: float = 0.0, **others: object) -> Operation:
@@ -126,6 +127,16 @@ def field_values(dofs: Dofs, name: str, function: Callable[[Array], Array], loca
     """Set a field to a function of the positions (n, dim)."""
     values = function(dofs.mesh.coordinates[dofs.nodes[name]])
     dofs.field(name, local)[...] = values.reshape(-1, dofs.fields[name].components)
+
+
+def affine(of: System, pressure: Callable[[Array], Array] | None = None) -> tuple[Array, Array]:
+    """u = A X and a pressure of the positions (0.2 by default), as a local state; also A."""
+    dim = of.dofs.mesh.dim
+    A, local = STRAIN[:dim, :dim], np.zeros(of.dofs.size_local)
+    field_values(of.dofs, "u", lambda X: X @ A.T, local)
+    if "p" in of.dofs.fields:
+        field_values(of.dofs, "p", pressure or (lambda X: np.full(len(X), 0.2)), local)
+    return local, A
 
 
 def everywhere(of: System, name: str, local: Array) -> Points:
