@@ -13,7 +13,7 @@ import petsc4py
 from mpi4py import MPI
 from rich.console import Console
 
-from porolub.errors import SceneError
+from porolub.errors import SceneError, SolveError
 from porolub.io.directory import write_results
 from porolub.io.log import close_logging, setup_logging
 from porolub.io.printed import printed_for
@@ -21,7 +21,7 @@ from porolub.io.progress import Progress
 from porolub.io.table import print_comparison, print_results
 from porolub.scene import effects
 from porolub.solve.derived import scalars
-from porolub.solve.gather import gather_fields, gather_surface
+from porolub.solve.gather import gather_fields, gather_state, gather_surface
 from porolub.solve.report import Report, StepRecord
 from porolub.solve.steady import Outcome, SteadySolver
 
@@ -31,7 +31,10 @@ FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach"}
 
 def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = False,
               scene_path: Path | None = None) -> int:
-    """Solve a scene and write its output directory. Returns the exit code (0 or 3). Collective."""
+    """Solve a scene and write its output directory. Returns 0. Collective.
+
+    Raises SceneError for a scene that cannot be run and SolveError when the solve failed; what
+    was computed is written first."""
     if scene.time is not None:
         raise SceneError("transient scenes are not supported by this version: remove [time] or "
                          "use --set time=none for the steady state at t = 0.")
@@ -47,10 +50,12 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
         report = make_report(scene, outcome)
         if root:
             start = time.perf_counter()
-            write_results(Path(out_dir), report, scene, petsc_options)
+            write_results(Path(out_dir), report, scene, _options_used())
             outcome.clock.add("output", start)
             _show(report, scene, Path(out_dir), quiet)
-        return 0 if outcome.converged else 3
+        if not outcome.converged:
+            raise SolveError(f"{outcome.message} What was computed is in {out_dir}.")
+        return 0
     finally:
         close_logging()
 
@@ -63,6 +68,13 @@ def _start_petsc(options: str) -> None:
     PETSc.Options().insertString(options)
 
 
+def _options_used() -> str:
+    """Every option of porolub's solver in force, one a line, as PETSc reads them."""
+    from petsc4py import PETSc
+
+    return "\n".join(f"-{k} {v}" for k, v in sorted(PETSc.Options().getAll().items()))
+
+
 def make_report(scene: Any, outcome: Outcome) -> Report:
     """Summary, fields and profiles of an outcome. Collective; complete on rank 0."""
     model, x = outcome.model, outcome.x
@@ -70,6 +82,7 @@ def make_report(scene: Any, outcome: Outcome) -> Report:
     values = scalars(model, x)
     fields = gather_fields(model, x)
     surface = gather_surface(model, x)
+    state = gather_state(model, x)
     outcome.clock.add("output", start)
     counts = _counts(model)
     comm = model.mesh.comm
@@ -88,7 +101,7 @@ def make_report(scene: Any, outcome: Outcome) -> Report:
         "peak_memory": memory, "versions": _versions(),
     }
     step = {k: v for k, v in values.items() if isinstance(v, float)}
-    return Report(summary, fields, surface, outcome.newton, [StepRecord(0.0, step)])
+    return Report(summary, fields, surface, outcome.newton, [StepRecord(0.0, step)], state)
 
 
 def _counts(model: Any) -> dict[str, int]:

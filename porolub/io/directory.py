@@ -5,6 +5,7 @@ from pathlib import Path
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing, write_text
+from porolub.io.checkpoint import write_checkpoint
 from porolub.io.fields import write_fields
 from porolub.io.history import write_history
 from porolub.io.summary import write_summary
@@ -50,6 +51,9 @@ def write_results(
         write_fields(directory, report.fields, report.history[-1].time if report.history else 0.0)
         if report.surface is not None:
             write_surface(directory / "surface.csv", report.surface)
+        if report.state is not None:
+            text = (directory / "scene.resolved.toml").read_text(encoding="utf-8")
+            write_checkpoint(directory / "checkpoint.h5", report.state, scene, text)
         write_history(directory / "history.csv", report.history)
         write_summary(directory / "summary.json", report.summary)
         if plots:

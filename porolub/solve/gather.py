@@ -13,7 +13,7 @@ from porolub.fem.domains import Domain
 from porolub.laws.solid import von_mises_stress
 from porolub.solve.derived import Derived
 from porolub.solve.model import Model
-from porolub.solve.report import FieldData, SurfaceData
+from porolub.solve.report import FieldData, StateData, SurfaceData
 
 Array = NDArray[np.float64]
 
@@ -187,3 +187,28 @@ def _rows_to_flux(table: Array, corners: NDArray[np.int64]) -> None:
     table[:, 5] = np.interp(table[:, 0], centres, flux)
 
 
+
+
+def gather_state(model: Model, x: PETSc.Vec, time: float = 0.0) -> StateData | None:
+    """All unknowns on rank 0 in natural order, None elsewhere. Collective."""
+    d, mesh, s = Derived(model, x), model.mesh, model.scales
+    size = {"u": (s.length, "m"), "p": (s.pressure, "Pa"), "l": (s.pressure, "Pa"),
+            "v0": (s.length, "m")}
+    fields, units = {}, {}
+    for name, f in model.dofs.fields.items():
+        scale, units[name] = size[name]
+        if f.degree == 0:
+            value = model.dofs.scalar_value(name, x)
+            fields[name] = (np.zeros(0, dtype=np.int64), np.array([[value * scale]]))
+            continue
+        nodes = model.dofs.nodes[name]
+        mine = mesh.owned[nodes]
+        part = (mesh.natural_node[nodes[mine]], model.dofs.field(name, d.local)[mine] * scale)
+        parts = mesh.comm.gather(part, root=0)
+        if parts is not None:
+            numbers = np.concatenate([p[0] for p in parts])
+            order = np.argsort(numbers)
+            fields[name] = (numbers[order], np.vstack([p[1] for p in parts])[order])
+    places = _to_root(mesh, np.arange(len(mesh.coordinates)), mesh.global_node_count,
+                      mesh.coordinates)
+    return None if places is None else StateData(time, fields, units, places * s.length)

@@ -24,6 +24,7 @@ TOO_MANY = PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
 
 # Largest plausible update of one iteration, in thicknesses and moduli.
 LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03}
+SHORT = 0.4  # a step cut below this counts as strongly shortened
 
 
 @dataclass
@@ -65,6 +66,7 @@ class Newton:
         self.limits = dict(LIMITS)
         self.tolerance, self.max_iterations = 1e-9, 40
         self.abort_below = 0.0  # lowest J tolerated
+        self.patience = 1000  # strongly shortened steps tolerated before giving up
         start = time.perf_counter()
         self.matrix = system.create_matrix()
         self._residual = self.dofs.vector()
@@ -128,7 +130,7 @@ class Newton:
     def _test(self, snes: PETSc.SNES, iteration: int, norms: tuple[float, ...]) -> int:
         if iteration == 0:
             self._updates, self._damping = {}, 1.0
-            self._stalled, self._previous_size = 0, np.inf
+            self._stalled, self._previous_size, self._shortened = 0, np.inf, 0
         record = self._record(iteration, snes)
         if iteration > 0:
             self.iterations += 1
@@ -139,6 +141,10 @@ class Newton:
             return DIVERGED
         if self.system.lowest_jacobian <= self.abort_below:
             self._why = f"the volume ratio J fell to {self.system.lowest_jacobian:.2g}"
+            return DIVERGED
+        self._shortened += self._damping < SHORT
+        if self._shortened > self.patience:
+            self._why = "Newton's steps stay implausibly long"
             return DIVERGED
         if self._damping == 1.0 and size < self.tolerance:
             return CONVERGED

@@ -83,11 +83,25 @@ class NewtonRecord:
 
 
 @dataclass(frozen=True)
+class StateData:
+    """The unknowns on rank 0, partition independent (SI).
+
+    fields: name -> (natural numbers of the nodes that carry it, values (k, components)); scalars
+    have no nodes; units: name -> unit; mesh_nodes: (n, dim) positions of all nodes, m.
+    """
+
+    time: float
+    fields: dict[str, tuple[NDArray[np.int64], Array]]
+    units: dict[str, str]
+    mesh_nodes: Array
+
+
+@dataclass(frozen=True)
 class Report:
     """All results of a run.
 
     summary: the keys of summary.json (contract); surface is None without a lubricated surface;
-    newton: every iteration of the solve; history: accepted steps.
+    newton: every iteration of the solve; history: accepted steps; state: the unknowns.
     """
 
     summary: dict[str, Any]
@@ -95,3 +109,4 @@ class Report:
     surface: SurfaceData | None
     newton: list[NewtonRecord] = field(default_factory=list)
     history: list[StepRecord] = field(default_factory=list)
+    state: StateData | None = None

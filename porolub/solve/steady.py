@@ -136,7 +136,9 @@ class SteadySolver:
         starter = Starter(model, newton)
         if data is not None:
             x = restore(model, data)
+            newton.patience = 2  # a good guess converges at once or not at all
             result = starter.straight(x, name)
+            newton.patience = 1000
             if result.converged:
                 return x, result
             x.destroy()
