@@ -154,7 +154,7 @@ class SteadySolver:
             settle = False
         if self.scene.pores is not None or self.scene.film is not None:
             log.info("%s: straight Newton failed (%s); starting up in time", name, result.why)
-            result = starter.physical(x, settle, StartUp(steps=60) if settle else StartUp())
+            result = starter.physical(x, settle, StartUp(first_step=3e-3, steps=60) if settle else StartUp())
             self.rejected += starter.rejected
         return x, result
 

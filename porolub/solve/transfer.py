@@ -7,8 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
-from scipy.interpolate import RegularGridInterpolator
+from scipy.interpolate import PchipInterpolator
 
+from porolub.fem.dofs import Field
 from porolub.solve.model import Model
 
 Array = NDArray[np.float64]
@@ -30,6 +31,18 @@ def _axes(dim: int, support: str) -> list[int]:
     return [k for k in range(dim) if support == "body" or k != 1]
 
 
+def _grid_places(model: Model, f: Field, places: Array
+                 ) -> tuple[tuple[Array, ...], tuple[NDArray[np.int64], ...]]:
+    """Ticks of the field's tensor grid and the index of each logical place (n, dim) in it."""
+    mesh = model.mesh
+    all_ticks = mesh.ticks() if f.degree == mesh.degree else mesh.vertex_ticks
+    axes = _axes(mesh.dim, f.support)
+    ticks = tuple(np.asarray(all_ticks[k]) for k in axes)
+    index = tuple(np.searchsorted((t[1:] + t[:-1]) / 2, places[:, k])
+                  for t, k in zip(ticks, axes, strict=True))
+    return ticks, index
+
+
 def snapshot(model: Model, x: PETSc.Vec) -> Snapshot:
     """Gather a solution. Collective."""
     mesh, dofs = model.mesh, model.dofs
@@ -45,11 +58,7 @@ def snapshot(model: Model, x: PETSc.Vec) -> Snapshot:
         values = dofs.field(name, local)[mine]
         places = np.vstack(mesh.comm.allgather(places))
         values = np.vstack(mesh.comm.allgather(values))
-        axes = _axes(mesh.dim, f.support)
-        all_ticks = mesh.ticks() if f.degree == mesh.degree else mesh.vertex_ticks
-        ticks = tuple(np.asarray(all_ticks[k]) for k in axes)
-        index = tuple(np.clip(np.searchsorted((t[1:] + t[:-1]) / 2, places[:, k]), 0, len(t) - 1)
-                      for t, k in zip(ticks, axes, strict=True))
+        ticks, index = _grid_places(model, f, places)
         grid = np.zeros((*map(len, ticks), f.components))
         grid[index] = values
         grids[name] = (ticks, grid)
@@ -64,10 +73,12 @@ def restore(model: Model, data: Snapshot) -> PETSc.Vec:
         if f.degree == 0 or name not in data.grids:
             continue
         ticks, grid = data.grids[name]
-        nodes = dofs.nodes[name]
-        places = np.clip(mesh.logical(mesh.coordinates[nodes]), 0.0, 1.0)
-        places = places[:, _axes(mesh.dim, f.support)]
-        values = RegularGridInterpolator(ticks, grid, bounds_error=False, fill_value=None)(places)
+        places = mesh.logical(mesh.coordinates[dofs.nodes[name]])
+        wanted, index = _grid_places(model, f, places)
+        for axis, (old, new) in enumerate(zip(ticks, wanted, strict=True)):
+            # monotone: no new extrema, so no spurious contact or film between old nodes
+            grid = PchipInterpolator(old, grid, axis=axis)(new)
+        values = grid[index]
         local[dofs.range[name]] = values.ravel()
     local = model.system.stored(local)
     x = dofs.vector()
