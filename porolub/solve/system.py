@@ -105,6 +105,7 @@ class System:
             rows = slice(start, min(start + step, len(domain)))
             yield Points(domain, self.dofs, local, rows, self.finite, self.previous)
 
+    @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # J <= 0 is seen by _watch
     def _assemble(self, x: Array, r: Array | None, values: Array | None,
                   only: set[str] | None = None) -> None:
         """One pass over the points: adds to the local residual, to the matrix values, or both."""
