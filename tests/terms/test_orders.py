@@ -1,0 +1,80 @@
+"""Observed orders of convergence of the coupled, finite-strain system with carry (Q2-Q1).
+
+The displacement has order 3 and the pressure order 2 in L2, wherever the pressure is what holds
+the volume: the nearly undrained step.  In drained flow the pressure obeys its own equation, and
+its error - of order 2, of one sign within an element - loads the skeleton through a grad p: then
+the displacement has order 2 too, whatever its own element can do.  Order 3 returns where the
+pressure hardly varies, so that its error is small.
+"""
+
+import numpy as np
+import pytest
+
+from porolub.fem.domains import Domain
+from porolub.fem.points import Points
+from porolub.laws.solid import NeoHookean
+from porolub.terms.carry import Carry
+from porolub.terms.pores import Pores
+from porolub.terms.skeleton import Skeleton
+from porolub.terms.storage import Storage
+from tests.fem import meshes
+from tests.terms.manufactured import Exact, Sources, given, interpolated, solve
+from tests.terms.support import operation, system
+
+SHEAR, BULK, BIOT, STORAGE = 0.45, 0.7, 0.9, 0.1
+ENDS = ("inlet", "outlet")
+PLANE = [(4, 2), (8, 4), (16, 8)]
+SPACE = [(3, 2, 2), (6, 4, 4)]
+
+
+def errors(kind, counts, spatial, mobility, rate, swing, speed=0.7):
+    """L2 errors of u and p after Newton, whose residual ends small but is not exactly zero."""
+    mesh, at = meshes.mesh(kind, *counts), operation("rotation", speed, rate=rate)
+    exact = Exact(SHEAR, BULK, BIOT, mobility, STORAGE, spatial, at, swing=swing)
+    terms = [Skeleton(NeoHookean(SHEAR, BULK), mesh.dim, 2), Pores(BIOT, mobility, spatial, 1),
+             Storage(BIOT, STORAGE, at), Carry(BIOT, at, ENDS, False),
+             Sources(exact, "lubricated", ENDS)]
+    dofs = system(mesh, terms).dofs
+    of = system(mesh, terms, points=4, constraints=given(dofs, exact, "lubricated", ENDS))
+    of.previous = np.zeros(of.dofs.size_local)
+    state, norms = solve(of, interpolated(of.dofs, exact))
+    assert 0.0 < norms[-1] < 1e-9 * max(1.0, rate) < norms[0]
+    assert of.lowest_jacobian < 0.9, "hardly deformed: nothing of finite strain was tested"
+    domain = Domain("cells", mesh, 5)
+    found = Points(domain, of.dofs, state, slice(0, len(domain)), True)
+    du = found.value("u") - exact.u(domain.position)
+    dp = found.value("p") - exact.p(domain.position)
+    return [np.sqrt((domain.weights[..., None] * du**2).sum()),
+            np.sqrt((domain.weights * dp**2).sum())]
+
+
+def orders(kind, meshes_of, *how, **options):
+    found = np.array([errors(kind, counts, *how, **options) for counts in meshes_of])
+    assert found.min() > 1e-9
+    return np.log2(found[:-1] / found[1:])
+
+
+RUNS = [("sector", PLANE), ("sector of triangles", PLANE), ("barrel", SPACE)]
+
+
+@pytest.mark.parametrize("spatial", [True, False], ids=["spatial", "material"])
+@pytest.mark.parametrize(("kind", "counts"), RUNS, ids=[kind for kind, _ in RUNS])
+def test_nearly_undrained_step(kind, counts, spatial):
+    u, p = orders(kind, counts, spatial, mobility=1e-3, rate=1e3, swing=0.2).T
+    assert u.min() > 2.85
+    assert p.min() > 1.95
+
+
+@pytest.mark.parametrize("spatial", [True, False], ids=["spatial", "material"])
+@pytest.mark.parametrize("kind", ["sector", "sector of triangles"])
+def test_steady_drained_flow(kind, spatial):
+    u, p = orders(kind, PLANE, spatial, mobility=0.7, rate=0.0, swing=0.2).T
+    assert u[-1] > 1.95
+    assert p[-1] > 1.95
+
+
+@pytest.mark.parametrize("kind", ["sector", "sector of triangles"])
+def test_steady_skeleton_under_a_nearly_uniform_pressure(kind):
+    u, p = orders(kind, PLANE, True, mobility=0.7, rate=0.0, swing=1e-3, speed=0.0).T
+    assert u.min() > 2.85
+    assert p.min() > 1.95
