@@ -26,7 +26,7 @@ from porolub.solve.report import Report, StepRecord
 from porolub.solve.steady import Outcome, SteadySolver
 
 log = logging.getLogger(__name__)
-FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach"}
+FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach", "j": "volume_change"}
 
 
 def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = False,

@@ -49,6 +49,7 @@ def _heading(field: str) -> str:
         "displacement": "solid",
         "fluid pressure": "fluid",
         "pore pressure": "fluid",
+        "volume change": "volume",
         "film pressure": "film",
         "contact pressure": "contact",
         "approach": "balance",

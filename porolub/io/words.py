@@ -7,9 +7,11 @@ FIELDS = {
     "p": "fluid pressure",
     "l": "contact pressure",
     "v0": "approach",
+    "j": "volume change",
     "displacement": "displacement",
     "pore_pressure": "pore pressure",
     "film_pressure": "film pressure",
+    "volume_change": "volume change",
     "contact_pressure": "contact pressure",
     "approach": "approach",
 }

@@ -17,6 +17,7 @@ _PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, 
 _FIELDS = {
     "displacement": "layer",
     "pore_pressure": "layer, surface included",
+    "volume_change": "layer (J - 1 on the pressure's nodes, stabilises carry)",
     "film_pressure": "lubricated surface",
     "contact_pressure": "lubricated surface",
     "approach": "the rigid plane",

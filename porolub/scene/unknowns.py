@@ -13,7 +13,8 @@ def estimate_unknowns(scene: Scene) -> dict[str, int]:
 
     Fields that the scene does not have are left out. Nodes with prescribed values are counted:
     they stay in the system. Contact pressure sits on the displacement nodes of the lubricated
-    surface; pore pressure has its own degree; without pores the film pressure sits on the surface
+    surface; pore pressure has its own degree, and so has the
+    projected volume change that stabilises the carry term; without pores the film pressure sits on the surface
     only. Raises SceneError if a mesh file cannot be read.
     """
     mesh = scene.mesh
@@ -23,6 +24,8 @@ def estimate_unknowns(scene: Scene) -> dict[str, int]:
         count["displacement"] = scene.dimension * layer(mesh.degree)
     if scene.pores is not None:
         count["pore_pressure"] = layer(mesh.pressure_degree)
+        if scene.pores.carry:
+            count["volume_change"] = layer(mesh.pressure_degree)
     elif scene.film is not None:
         count["film_pressure"] = surface(mesh.pressure_degree)
     if scene.contact is not None:

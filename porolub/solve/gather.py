@@ -193,7 +193,7 @@ def gather_state(model: Model, x: PETSc.Vec, time: float = 0.0) -> StateData | N
     """All unknowns on rank 0 in natural order, None elsewhere. Collective."""
     d, mesh, s = Derived(model, x), model.mesh, model.scales
     size = {"u": (s.length, "m"), "p": (s.pressure, "Pa"), "l": (s.pressure, "Pa"),
-            "v0": (s.length, "m")}
+            "v0": (s.length, "m"), "j": (1.0, "1")}
     fields, units = {}, {}
     for name, f in model.dofs.fields.items():
         scale, units[name] = size[name]

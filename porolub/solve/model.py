@@ -150,7 +150,7 @@ def build_terms(scene: Any, mesh: Any, law, scales: Scales, operation: Operation
             ends = tuple(e for e in ("inlet", "outlet") if e in mesh.boundary_names)
             terms.append(Carry(a, operation, ends, scene.conventions.entering == "fresh"))
             capacity = a**2 / law.constrained_modulus
-            terms.append(Streamline(capacity, mobility, operation))
+            terms.append(Streamline(a, capacity, mobility, operation, m.pressure_degree))
     if boundary is not None and displacement and (scene.pores is not None or scene.film is not None):
         balanced = scene.conventions.surface_traction == "balanced" or scene.pores is None
         share = 1.0 if balanced else scene.pores.biot

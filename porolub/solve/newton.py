@@ -23,7 +23,7 @@ DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
 TOO_MANY = PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
 
 # Largest plausible update of one iteration, in thicknesses and moduli.
-LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03}
+LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03, "j": np.inf}
 SHORT = 0.4  # a step cut below this counts as strongly shortened
 
 

@@ -19,7 +19,7 @@ from porolub.solve.newton import Newton, NewtonResult
 
 PRESSED_IN = 0.05  # first guess of the approach for a straight start, thicknesses
 LIFTED = -0.01  # where the plane starts in the physical start-up
-STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3}
+STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3, "j": np.inf}
 
 
 @dataclass(frozen=True)

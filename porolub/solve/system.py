@@ -38,8 +38,8 @@ def union_of_fields(terms: list[Term]) -> list[Field]:
         for name in t.reads():
             if name not in fields:
                 raise ValueError(f"the term {t.name!r} needs the field {name!r}, which nobody adds")
-    order = [n for n in ("u", "p", "l") if n in fields]
-    rest = sorted(n for n in fields if n not in ("u", "p", "l"))
+    order = [n for n in ("u", "p", "j", "l") if n in fields]
+    rest = sorted(n for n in fields if n not in order)
     return [fields[n] for n in [*order, *rest]]
 
 
