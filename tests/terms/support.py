@@ -111,8 +111,9 @@ def smooth(dofs: Dofs, size: float = 0.05, v0: float = 0.1) -> Array:
             continue
         phase = X[nodes] @ WAVES[:, : X.shape[1]].T
         values = {"u": size * np.sin(phase + SHIFTS),
-                  "p": 0.3 + 0.2 * np.sin(phase + 0.5), "l": 0.3 * np.sin(2 * phase + 0.9)}[name]
-        dofs.field(name, local)[...] = values[:, : dofs.fields[name].components]
+                  "p": 0.3 + 0.2 * np.sin(phase + 0.5), "l": 0.3 * np.sin(2 * phase + 0.9)}
+        others = 0.1 * np.sin(phase + 1.7)
+        dofs.field(name, local)[...] = values.get(name, others)[:, : dofs.fields[name].components]
     return local
 
 

@@ -10,7 +10,7 @@ from tests.terms.support import everywhere, vector
 Array = NDArray[np.float64]
 
 STEPS = np.array([1.0, 0.5, 0.25])
-SIZES = {"u": 2e-4, "p": 1e-2, "l": 2e-3, "v0": 2e-4}  # of the largest change, by field
+SIZES = {"u": 2e-4, "p": 1e-2, "l": 2e-3, "v0": 2e-4}  # of the largest change; others as p
 MARGIN = 6e-4  # what keeps every gap, or l - gap, away from its kink under these changes
 
 
@@ -18,7 +18,8 @@ def direction(of: System, name: str, seed: int) -> Array:
     """A random local change of one field that respects the constraints."""
     change = np.zeros(of.dofs.size_local)
     r = of.dofs.range[name]
-    change[r] = SIZES[name] * np.random.default_rng(seed).uniform(-1, 1, r.stop - r.start)
+    random = np.random.default_rng(seed).uniform(-1, 1, r.stop - r.start)
+    change[r] = SIZES.get(name, SIZES["p"]) * random
     change[of.constraints.fixed] = 0.0
     return change
 

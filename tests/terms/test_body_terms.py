@@ -172,31 +172,65 @@ def test_nothing_is_stored_in_a_steady_solve():
     assert not of.local_residual(smooth(of.dofs)).any()
 
 
+def streamline(kind, along, mobility, change):
+    """A system of the stabilisation and its state with a volume change j of the positions."""
+    mesh = meshes.mesh(kind, along, 2)
+    at = setting(mesh, "lubricated")
+    term = Streamline(BIOT, 0.8, mobility, at.operation, 2)
+    of = system(mesh, [term], ["u", "p"], pressure_degree=2)
+    local = np.zeros(of.dofs.size_local)
+    field_values(of.dofs, "j", change, local)
+    return of, of.dofs.field("j", local), of.dofs.field("p", of.local_residual(local))
+
+
 @pytest.mark.parametrize("kind", ["sector", "barrel"])
 def test_streamline_diffusion_acts_along_the_stream_only(kind):
-    """The pressure r^2 varies across the stream: its streamline flux is zero; theta's is not."""
-    mesh = meshes.mesh(kind, 8, 2)
-    at = setting(mesh, "lubricated")
-    of = system(mesh, [Streamline(0.8, 0.05, at.operation)], ["p"], pressure_degree=2)
-    sizes = []
-    for pressure in (lambda X: X[:, 0] ** 2 + (X[:, 1] - meshes.RADIUS) ** 2,
-                     lambda X: np.arctan2(X[:, 0], meshes.RADIUS - X[:, 1])):
-        local = np.zeros(of.dofs.size_local)
-        field_values(of.dofs, "p", pressure, local)
-        sizes.append(np.abs(of.local_residual(local)).max())
+    """r^2 varies across the stream: its streamline flux is zero; that of the angle is not."""
+    sizes = [np.abs(streamline(kind, 8, 0.05, change)[2]).max() for change in (
+        lambda X: X[:, 0] ** 2 + (X[:, 1] - meshes.RADIUS) ** 2,
+        lambda X: np.arctan2(X[:, 0], meshes.RADIUS - X[:, 1]))]
     assert sizes[0] < 1e-3 * sizes[1]
     assert sizes[1] > 1e-3
 
 
 def test_streamline_diffusion_fades_with_refinement():
     sizes = []
-    for refined in (8, 16, 32):
-        mesh = meshes.mesh("sector", refined, 2)
-        at = setting(mesh, "lubricated")
-        of = system(mesh, [Streamline(0.8, 1.0, at.operation)], ["p"], pressure_degree=2)
-        local = np.zeros(of.dofs.size_local)
-        field_values(of.dofs, "p", lambda X: X[:, 0] ** 2, local)
-        sizes.append(local @ of.local_residual(local))
+    for along in (8, 16, 32):
+        _, change, found = streamline("sector", along, 1.0, lambda X: X[:, 0] ** 2)
+        sizes.append((change * found).sum())  # int a c_s (s . grad j)^2
+    assert min(sizes) > 0.0
     np.testing.assert_allclose(np.log2(np.divide(sizes[:-1], sizes[1:])), 2.0, atol=0.1)
 
 
+@each
+def test_the_stabilised_quantity_is_the_volume_change(kind):
+    """J - 1 of an affine displacement satisfies all rows of j; twice as much does not."""
+    mesh = meshes.mesh(kind)
+    at = setting(mesh, meshes.surface(kind))
+    of = system(mesh, [Streamline(BIOT, 0.8, 0.05, at.operation, 1)], ["u", "p"])
+    local, A = affine(of)
+    change = np.linalg.det(np.eye(mesh.dim) + A) - 1.0
+    field_values(of.dofs, "j", lambda X: np.full(len(X), change), local)
+    assert 0.0 < np.abs(of.local_residual(local)).max() < TINY
+    field_values(of.dofs, "j", lambda X: np.full(len(X), 2 * change), local)
+    total = of.dofs.field("j", of.local_residual(local)).sum()
+    assert total == pytest.approx(change * of.domains["cells"].weights.sum(), rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["sector", "barrel"])
+def test_a_change_of_the_motion_is_noticed(kind):
+    """What depends on the motion only is kept; not longer than the motion lasts."""
+    mesh = meshes.mesh(kind)
+    found = []
+    for start in (0.7, -0.2):
+        at = setting(mesh, "lubricated")
+        at.operation.speed = start
+        terms = [Carry(BIOT, at.operation, at.ends, True),
+                 Streamline(BIOT, 0.8, 0.05, at.operation, 1)]
+        of = system(mesh, terms, ["u", "p"])
+        state = smooth(of.dofs)
+        first = of.local_residual(state)
+        at.operation.speed = -0.2
+        found.append(of.local_residual(state))
+        assert np.array_equal(first, found[-1]) == (start == -0.2)
+    np.testing.assert_array_equal(*found)
