@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import petsc4py
 from mpi4py import MPI
 from rich.console import Console
 
@@ -22,6 +21,7 @@ from porolub.io.table import print_comparison, print_results
 from porolub.scene import effects
 from porolub.solve.derived import scalars
 from porolub.solve.gather import gather_fields, gather_state, gather_surface
+from porolub.solve.options import set_options
 from porolub.solve.report import Report, StepRecord
 from porolub.solve.steady import Outcome, SteadySolver
 
@@ -40,12 +40,12 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
                          "use --set time=none for the steady state at t = 0.")
     comm = MPI.COMM_WORLD
     root = comm.rank == 0
-    _start_petsc(petsc_options)
+    user_options = set_options(petsc_options)
     setup_logging(Path(out_dir) if root else None)
     try:
         mode = "quiet" if quiet or not root else "auto"
         with Progress(mode) as progress:
-            solver = SteadySolver(scene, comm, progress.newton, progress.stage)
+            solver = SteadySolver(scene, comm, progress.newton, progress.stage, user_options)
             outcome = solver.solve()
         report = make_report(scene, outcome)
         if root:
@@ -58,14 +58,6 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
         return 0
     finally:
         close_logging()
-
-
-def _start_petsc(options: str) -> None:
-    """Start PETSc with the user's options; those of porolub's solver carry its prefix."""
-    petsc4py.init([])
-    from petsc4py import PETSc
-
-    PETSc.Options().insertString(options)
 
 
 def _options_used() -> str:

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=1)
-def _petsc() -> ctypes.CDLL:
+def petsc_library() -> ctypes.CDLL:
     """The PETSc library this process already uses."""
     with open("/proc/self/maps", encoding="utf-8") as maps:
         paths = {line.split()[-1] for line in maps if "libpetsc" in line}
@@ -44,14 +44,14 @@ def preallocate(mat: PETSc.Mat, rows: NDArray[np.int32], cols: NDArray[np.int32]
     """Fix the pattern; entries with a negative row or column are ignored from then on."""
     rows = np.ascontiguousarray(rows, dtype=PETSc.IntType)
     cols = np.ascontiguousarray(cols, dtype=PETSc.IntType)
-    _check(_petsc().MatSetPreallocationCOO(mat.handle, len(rows), rows.ctypes.data,
+    _check(petsc_library().MatSetPreallocationCOO(mat.handle, len(rows), rows.ctypes.data,
                                            cols.ctypes.data))
 
 
 def insert(mat: PETSc.Mat, values: Array) -> None:
     """Set all values, in the order of the pattern; repeated entries are summed."""
     values = np.ascontiguousarray(values, dtype=np.float64)
-    _check(_petsc().MatSetValuesCOO(mat.handle, values.ctypes.data,
+    _check(petsc_library().MatSetValuesCOO(mat.handle, values.ctypes.data,
                                     int(PETSc.InsertMode.INSERT)))
 
 
@@ -59,8 +59,8 @@ def insert(mat: PETSc.Mat, values: Array) -> None:
 def values_of(mat: PETSc.Mat, count: int) -> Iterator[Array]:
     """The stored values (count,) of a sequential AIJ matrix, row by row, to be written."""
     pointer = ctypes.POINTER(ctypes.c_double)()
-    _check(_petsc().MatSeqAIJGetArray(mat.handle, ctypes.byref(pointer)))
+    _check(petsc_library().MatSeqAIJGetArray(mat.handle, ctypes.byref(pointer)))
     try:
         yield np.ctypeslib.as_array(pointer, (count,))
     finally:
-        _check(_petsc().MatSeqAIJRestoreArray(mat.handle, ctypes.byref(pointer)))
+        _check(petsc_library().MatSeqAIJRestoreArray(mat.handle, ctypes.byref(pointer)))

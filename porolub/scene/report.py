@@ -121,7 +121,7 @@ def _rows(scene: Scene, cost: dict[str, int]) -> list[tuple[str, str, str]]:
             f"a {pores.biot:g}, kappa {pores.permeability:.4g} m^2" if pores else "",
             f"{unknowns('pore_pressure')}; flow block, coupling to the solid",
         ),
-        ("carry", "v . grad J", "coupling pressure to displacement; stabilised"),
+        ("carry", "v . grad J", f"{unknowns('volume_change')}; coupling pressure to displacement"),
         ("film", f"eta {readable(film.viscosity, 'Pa s')}" if film else "", film_cost),
         ("squeeze", "dh/dt", "coupling in time"),
         (

@@ -75,18 +75,11 @@ class Newton:
 
     def _snes(self) -> PETSc.SNES:
         snes = PETSc.SNES().create(comm=self.dofs.mesh.comm)
-        snes.setOptionsPrefix("porolub_")
         snes.setType("newtonls")
         snes.setFunction(self._function, self._residual)
         snes.setJacobian(self._jacobian, self.matrix)
         snes.setLineSearchPreCheck(self._limit_step)
         snes.setConvergenceTest(self._test)
-        options = PETSc.Options()
-        defaults = {"snes_linesearch_type": "basic", "ksp_type": "preonly", "pc_type": "lu",
-                    "pc_factor_mat_solver_type": "mumps", "mat_mumps_icntl_14": 80}
-        for key, value in defaults.items():
-            if not options.hasName(f"porolub_{key}"):
-                options.setValue(f"porolub_{key}", value)
         snes.setTolerances(max_it=1000)
         snes.setFromOptions()
         snes.getKSP().setErrorIfNotConverged(False)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -20,6 +20,7 @@ from porolub.mesh import build_mesh
 from porolub.solve.derived import Derived
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.newton import Clock, Newton, NewtonResult
+from porolub.solve.options import refuse_unused, set_options
 from porolub.solve.report import NewtonRecord
 from porolub.solve.startup import LIFTED, PRESSED_IN, Starter, StartUp
 from porolub.solve.transfer import Snapshot, restore, snapshot
@@ -78,10 +79,14 @@ class SteadySolver:
 
     def __init__(self, scene: Any, comm: Any,
                  observe: Callable[[NewtonRecord], None] = lambda record: None,
-                 announce: Callable[[str, float], None] = lambda name, fraction: None) -> None:
+                 announce: Callable[[str, float], None] = lambda name, fraction: None,
+                 user_options: Sequence[str] = ()) -> None:
+        """``user_options``: names of PETSc options that some solver must read."""
         self.scene, self.comm, self.announce = scene, comm, announce
         self.records: list[NewtonRecord] = []
-        self._observe = observe
+        self._observe, self._user_options = observe, list(user_options)
+        if not PETSc.Options().hasName("pc_type"):
+            set_options("")
         self.clock = Clock()
         self.newton_iterations = self.linear_iterations = self.rejected = 0
 
@@ -107,6 +112,7 @@ class SteadySolver:
             x, result = self._level(model, newton, data, name)
             self.newton_iterations += newton.iterations
             self.linear_iterations += newton.linear_iterations
+            refuse_unused(self._user_options)
             newton.destroy()
             failures += not result.converged
             if number == len(levels) - 1 or failures == FAILURES_ALLOWED:

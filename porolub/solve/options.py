@@ -1,0 +1,59 @@
+"""PETSc options of the solver: defaults with their reasons, the user's on top, none ignored."""
+
+from __future__ import annotations
+
+import ctypes
+import difflib
+
+from petsc4py import PETSc
+
+from porolub.errors import SceneError
+from porolub.fem.coo import petsc_library
+
+DIRECT: dict[str, str] = {
+    "snes_linesearch_type": "basic",  # descent stalls at the kinks of contact; see solve/newton.py
+    "ksp_type": "preonly",  # the factorisation is exact
+    "pc_type": "lu",
+    "pc_factor_mat_solver_type": "mumps",  # parallel, and pivots the zero blocks of contact
+    "mat_mumps_icntl_14": "80",  # % of extra workspace: pivoting needs more than the estimate
+}
+"""MUMPS on the whole matrix: the fastest in 2D up to some 300,000 unknowns."""
+
+KNOWN = (*DIRECT, "snes_monitor", "snes_view", "snes_converged_reason", "ksp_monitor", "ksp_rtol",
+         "ksp_view", "ksp_converged_reason", "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7",
+         "options_left")
+
+
+def names_in(text: str) -> list[str]:
+    """Names of the options in a command-line style text, without their dash."""
+    return [word[1:] for word in text.split()
+            if word.startswith("-") and not word[1:2].isdigit() and len(word) > 1]
+
+
+def set_options(text: str) -> list[str]:
+    """Put the user's options and, under them, the defaults into PETSc's database.
+
+    Returns the user's names. Raises SceneError for text that holds no option.
+    """
+    names = names_in(text)
+    if text.strip() and not names:
+        raise SceneError(f"--petsc = {text!r}: options start with a dash, such as "
+                         "--petsc \"-snes_monitor\".")
+    options = PETSc.Options()
+    options.insertString(text)
+    for key, value in DIRECT.items():
+        if not options.hasName(key):
+            options.setValue(key, value)
+    return names
+
+
+def refuse_unused(names: list[str]) -> None:
+    """Raise SceneError if PETSc has read none of the solvers' options by one of these names."""
+    library = petsc_library()
+    for name in names:
+        used = ctypes.c_int(0)
+        library.PetscOptionsUsed(None, name.encode(), ctypes.byref(used))
+        if not used.value:
+            near = difflib.get_close_matches(name, KNOWN, n=1)
+            hint = f"; did you mean -{near[0]}?" if near else "."
+            raise SceneError(f"--petsc -{name}: no solver of this scene reads that option{hint}")
