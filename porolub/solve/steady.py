@@ -164,11 +164,20 @@ class SteadySolver:
             self.rejected += starter.rejected
         return x, result
 
+    def _advice(self, why: str) -> str:
+        """What failed and what to try, in this scene."""
+        contact, solid = self.scene.contact, self.scene.solid
+        if contact is not None and contact.friction_traction and solid.base == "sliding":
+            tip = ('friction drags a layer that slides on its base, and the suction this causes '
+                   'feeds back on the load, so there may be no steady state: try solid.base = '
+                   '"bonded", contact.friction_traction = false or a smaller contact.friction')
+        else:
+            tip = ("try a finer mesh or mesh.grading = \"contact\", a smaller load or speed, and "
+                   "look at the last state in the output")
+        return f"The steady solve failed: {why}; {tip}."
+
     def _outcome(self, result: NewtonResult, model: Model, x: PETSc.Vec) -> Outcome:
-        message = "converged"
-        if not result.converged:
-            message = (f"The steady solve failed: {result.why}. Try a finer or graded mesh, "
-                       "a smaller load or speed, or look at the last state in the output.")
+        message = "converged" if result.converged else self._advice(result.why)
         return Outcome(result.converged, message, model, x, self.records,
                        self.newton_iterations, self.linear_iterations, self.rejected, self.clock)
 
