@@ -79,7 +79,8 @@ class Derived:
         """(nnode,) signed arc position along the lubricated surface from its middle, scaled."""
         mesh = self.model.mesh
         if mesh.shape is None:
-            return mesh.coordinates[:, 0]
+            circle = self.model.circle
+            return mesh.coordinates[:, 0] if circle is None else circle.arc(mesh.coordinates)
         return (mesh.logical(mesh.coordinates)[:, 0] - 0.5) * mesh.shape.length
 
     # -- groups of summary keys -------------------------------------------------------------
@@ -123,7 +124,7 @@ class Derived:
              "penetration_length", "contact_pressure_max"))
         if self.surface is None:
             return out
-        radius = getattr(model.scene.geometry, "outer_radius", None)
+        radius = model.circle.radius * length if model.circle is not None else None
         v0 = self.approach() * length
         gap = np.maximum(self.gap()[self.mine], 0.0)
         out |= {"approach": v0, "film_min": self.extreme(gap, False) * length}
@@ -182,10 +183,11 @@ class Derived:
             V, s = self.exchange()[self.mine], self.arc()[self.mine]
             flow = V * self.pressure_weights()[self.mine]
             unit = model.scales.volume_flow * model.scene.fluid_density
-            left = s < -1e-9
-            for side, part in (("left", left), ("right", ~left)):
-                out[f"inflow_{side}"] = -self.total(np.minimum(flow[part], 0.0).sum()) * unit
-                out[f"outflow_{side}"] = self.total(np.maximum(flow[part], 0.0).sum()) * unit
+            # a node in the middle belongs to both sides, so that reversed motion mirrors them
+            right = 0.5 + 0.5 * np.where(np.abs(s) < 1e-9, 0.0, np.sign(s))
+            for side, part in (("left", 1.0 - right), ("right", right)):
+                out[f"inflow_{side}"] = -self.total(part @ np.minimum(flow, 0.0)) * unit
+                out[f"outflow_{side}"] = self.total(part @ np.maximum(flow, 0.0)) * unit
             through = self.total(np.abs(flow).sum())
         out["mass_balance_error"] = self._mass_error(through)
         return out
