@@ -35,5 +35,5 @@ install:
 	@bash .ci/install.sh
 
 clean:
-	rm -rf .venv build *.egg-info porolub/fem/_kernels*.so
+	rm -rf .venv build *.egg-info porolub/fem/_kernels*.so porolub/laws/_tensors*.so
 	find porolub tests -name __pycache__ -prune -exec rm -rf {} +

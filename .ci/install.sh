@@ -17,11 +17,11 @@ say() { printf 'porolub: %s\n' "$*"; }
 stop() { say "$*" >&2; exit 1; }
 
 key=$(
-    sha256sum pyproject.toml setup.py porolub/fem/kernels.c .ci/install.sh
+    sha256sum pyproject.toml setup.py porolub/*/*.c .ci/install.sh
     echo "$root"
 )
-kernels=(porolub/fem/_kernels*.so)
-if [[ -f $stamp && -e ${kernels[0]} && $(<"$stamp") == "$key" ]]; then
+kernels=(porolub/fem/_kernels*.so porolub/laws/_tensors*.so)
+if [[ -f $stamp && -e ${kernels[0]} && -e ${kernels[1]} && $(<"$stamp") == "$key" ]]; then
     exit 0
 fi
 

@@ -18,6 +18,7 @@ from porolub.laws.lubricant import Newtonian
 from porolub.laws.solid import LinearElastic, NeoHookean
 from porolub.solve.conditions import constraints_of
 from porolub.solve.scales import Scales
+from porolub.solve.surface import Circle, surface_circle
 from porolub.solve.system import System, union_of_fields
 from porolub.terms.carry import Carry
 from porolub.terms.contact import Contact
@@ -81,7 +82,7 @@ class Model:
     system: System
     lubricated: str | None
     nodal_weights: Array  # (nnode,) integral of the displacement basis over the surface
-    target: Operation  # the operating point the scene asks for
+    circle: Circle | None  # the circle the lubricated surface lies on, if any
 
     def destroy(self) -> None:
         self.dofs.destroy()
@@ -94,13 +95,15 @@ def lubricated_name(scene: Any) -> str | None:
     return {"block": "top"}.get(scene.geometry.shape, "lubricated")
 
 
-def _operation(scene: Any, scales: Scales) -> Operation:
+def _operation(scene: Any, scales: Scales, circle: Circle | None) -> Operation:
     op = Operation(centre=(0.0,) * scales.dim)
     if scene.motion is not None:
         speed = scene.motion.at(0.0)
         if scene.motion.kind == "rotation":
-            centre = [0.0] * scales.dim
-            centre[1] = getattr(scene.geometry, "outer_radius", 0.0) / scales.length
+            if circle is None:
+                raise SceneError('motion.kind = "rotation": the lubricated surface of this mesh is '
+                                 "no circular arc, so there is no centre to turn about.")
+            centre = [*circle.centre, 0.0][: scales.dim]
             op = Operation("rotation", speed * scales.time, tuple(centre))
         else:
             axis = {"x": 0, "z": 2}[getattr(scene.motion, "direction", "x")]
@@ -186,11 +189,12 @@ def _traction(name: str, value: Any, dim: int, pressure: float) -> Traction:
 def build_model(scene: Any, mesh: Any, scales: Scales) -> Model:
     """Wire a scene to a mesh (already in units of ``scales.length``)."""
     law = solid_law(scene, scales.pressure)
-    operation = _operation(scene, scales)
     boundary = lubricated_name(scene)
     if boundary is not None and boundary not in mesh.boundary_names:
         raise SceneError(f"The mesh has no boundary {boundary!r}; it has "
                          f"{', '.join(sorted(mesh.boundary_names))}.")
+    circle = surface_circle(scene, mesh, boundary, scales.length)
+    operation = _operation(scene, scales, circle)
     plane = _plane(scene, mesh, boundary, operation) if boundary else None
     area, surface = 0.0, None
     if boundary:
@@ -212,9 +216,8 @@ def build_model(scene: Any, mesh: Any, scales: Scales) -> Model:
             domains[name] = Domain(name, mesh, CELL_POINTS[scene.mesh.degree])
     constraints = constraints_of(scene, mesh, dofs, scales, boundary)
     system = System(dofs, terms, domains, constraints, law is not None and law.finite)
-    target = Operation(**vars(operation))
     return Model(scene, mesh, scales, law, operation, plane, dofs, system, boundary, weights,
-                 target)
+                 circle)
 
 
 def _nodal_weights(mesh: Any, surface: Domain) -> Array:

@@ -23,6 +23,7 @@ from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.options import refuse_unused, set_options
 from porolub.solve.report import NewtonRecord
 from porolub.solve.startup import LIFTED, PRESSED_IN, Starter, StartUp
+from porolub.solve.surface import typical_thickness
 from porolub.solve.transfer import Snapshot, restore, snapshot
 
 log = logging.getLogger(__name__)
@@ -96,8 +97,7 @@ class SteadySolver:
 
     def solve(self) -> Outcome:
         """Solve the scene. Raises SceneError for a scene the mesh or the model refuses."""
-        thickness = getattr(self.scene.geometry, "thickness", None) or 1e-3
-        scales = scales_of(self.scene, thickness)
+        scales = scales_of(self.scene, self._thickness())
         data: Snapshot | None = None
         edges: tuple[float, ...] = ()
         levels = levels_of(self.scene)
@@ -126,6 +126,16 @@ class SteadySolver:
             model.destroy()
             model.mesh.destroy()
         raise AssertionError("unreachable: the last level returns")
+
+    def _thickness(self) -> float:
+        """Thickness of the layer in m, measured on a user's mesh."""
+        stated = getattr(self.scene.geometry, "thickness", None)
+        if stated is not None:
+            return float(stated)
+        mesh = build_mesh(self.scene, self.comm)
+        thickness = typical_thickness(mesh, lubricated_name(self.scene))
+        mesh.destroy()
+        return thickness
 
     def _model(self, level: Level, scales: Any, edges: tuple[float, ...]) -> Model:
         options: dict[str, Any] = {}
