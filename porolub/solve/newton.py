@@ -14,6 +14,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from petsc4py import PETSc
 
+from porolub.solve.place import Place, place_of_largest
 from porolub.solve.report import NewtonRecord
 from porolub.solve.system import System
 
@@ -25,6 +26,10 @@ TOO_MANY = PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
 # Largest plausible update of one iteration, in thicknesses and moduli.
 LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03, "j": np.inf}
 SHORT = 0.4  # a step cut below this counts as strongly shortened
+UNDETERMINED = 1e9  # an update of this size, scaled, comes from a singular matrix
+NAMES = {"u": ("displacement", "thicknesses"), "p": ("fluid pressure", "layer moduli"),
+         "l": ("contact pressure", "layer moduli"), "v0": ("approach", "thicknesses"),
+         "j": ("volume change", "of the volume")}
 
 
 @dataclass
@@ -44,11 +49,12 @@ class Clock:
 
 @dataclass
 class NewtonResult:
-    """converged; iterations; why: a sentence when it failed; place: where it is worst."""
+    """converged; iterations; why: a clause when it failed; place: where, in mesh units."""
 
     converged: bool
     iterations: int
     why: str = ""
+    place: Place | None = None
 
 
 class Newton:
@@ -129,11 +135,11 @@ class Newton:
             self.iterations += 1
             self.observe(record)
         size = max(self._updates.values(), default=np.inf)
-        if not np.isfinite(norms[2]):
-            self._why = "the residual is not finite"
-            return DIVERGED
-        if self.system.lowest_jacobian <= self.abort_below:
-            self._why = f"the volume ratio J fell to {self.system.lowest_jacobian:.2g}"
+        if not np.isfinite(norms[2]) or self.system.lowest_jacobian <= self.abort_below:
+            return self._not_defined()
+        if iteration > 0 and size > UNDETERMINED:
+            self._why = (f"the matrix is singular: nothing determines the {self._worst()[0]}; a "
+                         "support, a pressure or a surface in contact may be missing")
             return DIVERGED
         self._shortened += self._damping < SHORT
         if self._shortened > self.patience:
@@ -142,11 +148,26 @@ class Newton:
         if self._damping == 1.0 and size < self.tolerance:
             return CONVERGED
         if iteration >= self.max_iterations:
-            worst = max(self._updates, key=lambda name: self._updates[name])
-            self._why = (f"no convergence in {iteration} Newton iterations "
-                         f"(last update of {worst}: {self._updates[worst]:.1e} scaled)")
+            name, unit = self._worst()
+            self._why = (f"no convergence in {iteration} Newton iterations: the {name} still "
+                         f"changes by {size:.1e} {unit}")
             return TOO_MANY
         return GOES_ON
+
+    def _not_defined(self) -> int:
+        """The residual has no value at this state; say why."""
+        lowest, place = self.system.lowest()
+        if lowest <= self.abort_below:
+            self._why, self._place = f"the volume ratio J fell to {lowest:.2g}", place
+        else:
+            self._why = "the residual is not finite"
+        return DIVERGED
+
+    def _worst(self) -> tuple[str, str]:
+        """Name and unit of the field that still changes most; notes where it does."""
+        field = max(self._updates, key=lambda name: self._updates[name])
+        self._place = place_of_largest(self.dofs, field, self.snes.getSolutionUpdate())
+        return NAMES.get(field, (field, "scaled"))
 
     def _record(self, iteration: int, snes: PETSc.SNES) -> NewtonRecord:
         residuals = self.dofs.field_norms(snes.getFunction()[0], 2)
@@ -165,16 +186,27 @@ class Newton:
               tolerance: float = 1e-9, max_iterations: int = 40) -> NewtonResult:
         """Solve from x, in place."""
         self.stage, self.fraction = stage, fraction
-        self.tolerance, self.max_iterations, self._why = tolerance, max_iterations, ""
+        self.tolerance, self.max_iterations = tolerance, max_iterations
+        self._why, self._place = "", None
         before = self.iterations
         self.system.apply_conditions(x)
         self.snes.solve(None, x)
         reason = self.snes.getConvergedReason()
-        if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
-            self._why = "the linear solver failed: the matrix is singular to working precision"
         if reason < 0 and not self._why:
+            self._explain(reason)
+        return NewtonResult(reason > 0, self.iterations - before, self._why, self._place)
+
+    def _explain(self, reason: int) -> None:
+        """Why SNES itself gave up."""
+        reasons = PETSc.SNES.ConvergedReason
+        if reason == reasons.DIVERGED_LINEAR_SOLVE:
+            self._why = "the linear solver failed: the matrix is singular to working precision"
+        elif reason == reasons.DIVERGED_LINE_SEARCH and self.system.lowest_jacobian > 0.0:
+            self._why = "the line search found no better state"
+        elif reason in (reasons.DIVERGED_LINE_SEARCH, reasons.DIVERGED_FNORM_NAN):
+            self._not_defined()
+        else:
             self._why = f"SNES stopped with reason {reason}"
-        return NewtonResult(reason > 0, self.iterations - before, self._why)
 
     def destroy(self) -> None:
         for o in (self.snes, self.matrix, self._residual):

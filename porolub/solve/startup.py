@@ -75,7 +75,7 @@ class Starter:
                 trial.destroy()
                 if dt < options.smallest_step:
                     result = NewtonResult(False, 0, f"the start-up stalled at t = {t:.2g} "
-                                          f"consolidation times: {step.why}")
+                                          f"consolidation times: {step.why}", step.place)
                     break
                 continue
             self.steps += 1

@@ -21,6 +21,7 @@ from porolub.solve.derived import Derived
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.options import refuse_unused, set_options
+from porolub.solve.place import place_in_words
 from porolub.solve.report import NewtonRecord
 from porolub.solve.startup import LIFTED, PRESSED_IN, Starter, StartUp
 from porolub.solve.surface import typical_thickness
@@ -187,7 +188,10 @@ class SteadySolver:
         return f"The steady solve failed: {why}; {tip}."
 
     def _outcome(self, result: NewtonResult, model: Model, x: PETSc.Vec) -> Outcome:
-        message = "converged" if result.converged else self._advice(result.why)
+        why = result.why
+        if result.place is not None:
+            why += f", near {place_in_words(result.place, model.scales.length)}"
+        message = "converged" if result.converged else self._advice(why)
         return Outcome(result.converged, message, model, x, self.records,
                        self.newton_iterations, self.linear_iterations, self.rejected, self.clock)
 

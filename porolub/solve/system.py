@@ -20,6 +20,7 @@ from porolub.fem.dofs import Dofs, Field
 from porolub.fem.domains import Domain
 from porolub.fem.pattern import Pattern
 from porolub.fem.points import Integrand, Points
+from porolub.solve.place import Place
 from porolub.terms.term import Part, Term
 
 Array = NDArray[np.float64]
@@ -63,6 +64,7 @@ class System:
         self._pattern: Pattern | None = None
         self._blocks: dict[str, dict[tuple[str, str], Block]] = {}
         self.lowest_jacobian = 1.0
+        self._lowest_here: tuple[float, Place] = (np.inf, ())
         self.previous: Array | None = None  # physical local vector at the start of a step
 
     # -- state --------------------------------------------------------------------------
@@ -135,7 +137,15 @@ class System:
 
     def _watch(self, name: str, at: Points) -> None:
         if name == "cells" and at.has("u"):
-            self.lowest_jacobian = min(self.lowest_jacobian, float(at.deformation.J.min()))
+            J = at.deformation.J
+            if J.min() < self.lowest_jacobian:
+                self.lowest_jacobian = float(J.min())
+                worst = np.unravel_index(J.argmin(), J.shape)
+                self._lowest_here = self.lowest_jacobian, tuple(at.position[worst].tolist())
+
+    def lowest(self) -> tuple[float, Place]:
+        """Lowest J of the last residual and where it is, in mesh units. Collective."""
+        return min(self.dofs.mesh.comm.allgather(self._lowest_here))
 
     def _contract_residual(self, at: Points, out: Integrand, r: Array) -> None:
         d, rows = at.domain, at.rows
@@ -193,7 +203,7 @@ class System:
         x = self.physical(stored)
         r = None if out is None else np.zeros(self.dofs.size_local)
         if r is not None:
-            self.lowest_jacobian = np.inf
+            self.lowest_jacobian, self._lowest_here = np.inf, (np.inf, ())
         if mat is None:
             self._assemble(x, r, None)
         else:
