@@ -1,4 +1,4 @@
-"""An annulus sector as a mesh file, the way a user would bring one: triangles with named boundaries.
+"""An annulus sector as a mesh file, as a user would bring it: triangles, named boundaries.
 
     python meshes/sector.py sector.msh --size 0.1e-3
 

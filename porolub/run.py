@@ -43,12 +43,11 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
     user_options = set_options(petsc_options)
     setup_logging(Path(out_dir) if root else None)
     try:
-        mode = "quiet" if quiet or not root else "auto"
-        with Progress(mode) as progress:
+        with Progress("quiet" if quiet or not root else "auto") as progress:
             solver = SteadySolver(scene, comm, progress.newton, progress.stage, user_options)
             outcome = solver.solve()
         report = make_report(scene, outcome)
-        if root:
+        if report is not None:
             start = time.perf_counter()
             write_results(Path(out_dir), report, scene, _options_used())
             outcome.clock.add("output", start)
@@ -67,8 +66,8 @@ def _options_used() -> str:
     return "\n".join(f"-{k} {v}" for k, v in sorted(PETSc.Options().getAll().items()))
 
 
-def make_report(scene: Any, outcome: Outcome) -> Report:
-    """Summary, fields and profiles of an outcome. Collective; complete on rank 0."""
+def make_report(scene: Any, outcome: Outcome) -> Report | None:
+    """Summary, fields and profiles of an outcome on rank 0, None elsewhere. Collective."""
     model, x = outcome.model, outcome.x
     start = time.perf_counter()
     values = scalars(model, x)
@@ -80,10 +79,12 @@ def make_report(scene: Any, outcome: Outcome) -> Report:
     comm = model.mesh.comm
     memory = comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
     spent = {k: comm.allreduce(v, op=MPI.MAX) for k, v in outcome.clock.spent.items()}
+    if fields is None:
+        return None
     summary: dict[str, Any] = {
         "status": "converged" if outcome.converged else "failed", "message": outcome.message,
         **values,
-        "von_mises_max": None if fields is None else float(np.max(fields.von_mises)),
+        "von_mises_max": float(np.max(fields.von_mises)) if model.law is not None else None,
         "jacobian_min": model.system.lowest_jacobian if model.law is not None else None,
         "effects": effects(scene), "dofs": counts, "ranks": comm.size,
         "newton_iterations": outcome.newton_iterations,

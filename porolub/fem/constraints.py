@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from porolub.errors import SceneError
+from porolub.fem.dofs import Dofs
 
 Array = NDArray[np.float64]
 
@@ -58,7 +59,7 @@ def node_frame(directions: list[Array], values: list[float], where: str) -> tupl
 class ConstraintBuilder:
     """Collects conditions per node, then fixes the frames."""
 
-    def __init__(self, dofs) -> None:
+    def __init__(self, dofs: Dofs) -> None:
         self.dofs = dofs
         self._directions: dict[int, list[tuple[Array, float]]] = {}
         self._scalars: dict[int, float] = {}

@@ -7,12 +7,15 @@ rank owns a contiguous block, field by field; scalars (the rigid approach) sit o
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
+
+from porolub.mesh import Mesh
 
 Array = NDArray[np.float64]
 
@@ -35,7 +38,7 @@ class Field:
 class Dofs:
     """Dof numbers of a list of fields on a mesh."""
 
-    def __init__(self, mesh, fields: list[Field]) -> None:
+    def __init__(self, mesh: Mesh, fields: list[Field]) -> None:
         self.mesh = mesh
         self.fields = {f.name: f for f in fields}
         comm = mesh.comm
@@ -147,14 +150,14 @@ class Dofs:
         total.destroy()
         return result
 
-    def entity_dofs(self, name: str, domain) -> NDArray[np.int32]:
+    def entity_dofs(self, name: str, domain: Any) -> NDArray[np.int32]:
         """(ne, nn) local number of component 0 at the nodes of each entity, -1 where absent."""
         known = self._entity_dofs.setdefault(domain, {})
         if name not in known:
             known[name] = self._number_entities(name, domain)
         return known[name]
 
-    def _number_entities(self, name: str, domain) -> NDArray[np.int32]:
+    def _number_entities(self, name: str, domain: Any) -> NDArray[np.int32]:
         f, base = self.fields[name], self.base[name]
         if f.degree == 0:
             return np.full((len(domain), 1), base[0], dtype=np.int32)

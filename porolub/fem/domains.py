@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from porolub.errors import SolveError
 from porolub.fem import elements, quadrature
+from porolub.mesh import Facets, Mesh
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -41,7 +42,7 @@ class Domain:
     position: (ne, nq, dim); normal: (ne, nq, dim), outward (zeros on ``cells``)
     """
 
-    def __init__(self, name: str, mesh, points_per_direction: int) -> None:
+    def __init__(self, name: str, mesh: Mesh, points_per_direction: int) -> None:
         self.name = name
         self.mesh = mesh
         self.dim: int = mesh.dim
@@ -70,7 +71,7 @@ class Domain:
         self.inverse = np.ascontiguousarray(np.linalg.inv(jacobian))
         self.normal = np.zeros_like(self.position)
 
-    def _facets(self, facets, n: int) -> None:
+    def _facets(self, facets: Facets, n: int) -> None:
         mesh = self.mesh
         cell = mesh.cell_type
         points, w = quadrature.rule(elements.FACE_CELL[cell], n)
@@ -128,8 +129,10 @@ class Domain:
         return 2.0 / np.maximum(np.abs(self.inverse).sum(axis=2), 1e-300)
 
     def length_along(self, direction: Array, rows: slice = slice(None)) -> Array:
-        """(ne, nq) element length in a unit direction (ne, nq, dim): 2 / |d xi/dx . direction|; 0 without a
-        direction."""
+        """(ne, nq) element length in a unit direction (ne, nq, dim); 0 without a direction.
+
+        2 / |d xi/dx . direction| on tensor cells, half of it on simplices.
+        """
         rate = np.einsum("eqrd,eqd->eqr", self.inverse[rows], direction)
         reach = 1.0 if self.mesh.cell_type in ("triangle", "tet") else 2.0
         size = np.linalg.norm(rate, axis=-1)
@@ -139,7 +142,7 @@ class Domain:
 class NodalDomain(Domain):
     """The owned nodes of a boundary, each its own entity with one point: nodal quadrature."""
 
-    def __init__(self, name: str, mesh, nodes: NDArray[np.int64], weights: Array,
+    def __init__(self, name: str, mesh: Mesh, nodes: NDArray[np.int64], weights: Array,
                  normal: Array) -> None:
         self.name, self.mesh, self.dim = name, mesh, mesh.dim
         ne = len(nodes)

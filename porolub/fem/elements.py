@@ -5,7 +5,7 @@ Node orders are those of ``porolub.mesh.Mesh.cells`` (VTK's): vertices, edges, f
 
 from __future__ import annotations
 
-from functools import lru_cache
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,14 +28,14 @@ EDGES: dict[str, list[tuple[int, int]]] = {
             (0, 4), (1, 5), (2, 6), (3, 7)],
     "tet": [(0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)],
 }
-HEX_FACES = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (2, 3, 7, 6), (0, 1, 2, 3), (4, 5, 6, 7)]
+HEX_FACES: list[tuple[int, ...]] = [(0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (2, 3, 7, 6), (0, 1, 2, 3), (4, 5, 6, 7)]
 
 
 def dimension(cell: str) -> int:
     return len(VERTICES[cell][0])
 
 
-@lru_cache(maxsize=None)
+@cache
 def _nodes(cell: str, degree: int) -> Array:
     v = np.array(VERTICES[cell], dtype=float)
     if degree == 1:
@@ -61,7 +61,7 @@ def _exponents(cell: str, degree: int) -> NDArray[np.int64]:
     return grid
 
 
-@lru_cache(maxsize=None)
+@cache
 def _coefficients(cell: str, degree: int) -> Array:
     """Monomial coefficients (monomial, node) of the nodal basis."""
     x, powers = nodes(cell, degree), _exponents(cell, degree)

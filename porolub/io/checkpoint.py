@@ -26,7 +26,8 @@ def write_checkpoint(path: Path, state: StateData, scene: Scene, scene_toml: str
         for name, (nodes, values) in state.fields.items():
             group = file.create_group(name)
             group.create_dataset("nodes", data=nodes, dtype="i8")
-            group.create_dataset("values", data=values, dtype="f8").attrs["unit"] = state.units[name]
+            data = group.create_dataset("values", data=values, dtype="f8")
+            data.attrs["unit"] = state.units[name]
         file.create_dataset("mesh_nodes", data=state.mesh_nodes, dtype="f8").attrs["unit"] = "m"
 
 

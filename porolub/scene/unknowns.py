@@ -13,9 +13,9 @@ def estimate_unknowns(scene: Scene) -> dict[str, int]:
 
     Fields that the scene does not have are left out. Nodes with prescribed values are counted:
     they stay in the system. Contact pressure sits on the displacement nodes of the lubricated
-    surface; pore pressure has its own degree, and so has the
-    projected volume change that stabilises the carry term; without pores the film pressure sits on the surface
-    only. Raises SceneError if a mesh file cannot be read.
+    surface; pore pressure has its own degree, and so has the projected volume change that
+    stabilises the carry term; without pores the film pressure sits on the surface only.
+    Raises SceneError if a mesh file cannot be read.
     """
     mesh = scene.mesh
     layer, surface = _node_counts(scene)

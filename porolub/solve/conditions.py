@@ -1,4 +1,4 @@
-"""Essential conditions of a scene: those of the shape, replaced where the scene names a boundary."""
+"""Essential conditions: those of the shape, replaced where the scene names a boundary."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def constraints_of(scene: Any, mesh: Any, dofs: Dofs, scales: Any,
                     _fix(build, mesh, name, axis, 0.0)
             else:
                 _fix_normal(build, mesh, dofs, name, 0.0)
-    if scene.film is not None:
+    if scene.film is not None and lubricated is not None:
         _ambient_ends(build, mesh, dofs, lubricated)
     return build.build()
 

@@ -16,7 +16,7 @@ from petsc4py import PETSc
 from porolub.fem.domains import Domain
 from porolub.fem.points import Points
 from porolub.laws.lubricant import film_thickness
-from porolub.solve.model import FACET_POINTS, Model
+from porolub.solve.model import Model
 from porolub.terms.film import Film
 
 Array = NDArray[np.float64]
@@ -31,11 +31,9 @@ class Derived:
         self.comm = model.mesh.comm
         self.local = model.system.physical(model.dofs.to_local(x))
         self.film = next((t for t in model.system.terms if isinstance(t, Film)), None)
-        self.surface = None
-        if model.lubricated is not None:
-            domain = Domain(f"facets:{model.lubricated}", model.mesh, FACET_POINTS)
-            self.surface = self.at(domain)
-            self.nodes = model.mesh.boundary_nodes(model.lubricated)
+        if model.surface is not None:
+            self.surface = self.at(model.surface.domain)
+            self.nodes = model.mesh.boundary_nodes(model.surface.name)
             self.mine = self.nodes[model.mesh.owned[self.nodes]]
 
     def at(self, domain: Domain) -> Points:
@@ -79,17 +77,17 @@ class Derived:
         """(nnode,) signed arc position along the lubricated surface from its middle, scaled."""
         mesh = self.model.mesh
         if mesh.shape is None:
-            circle = self.model.circle
+            circle = None if self.model.surface is None else self.model.surface.circle
             return mesh.coordinates[:, 0] if circle is None else circle.arc(mesh.coordinates)
         return (mesh.logical(mesh.coordinates)[:, 0] - 0.5) * mesh.shape.length
 
     # -- groups of summary keys -------------------------------------------------------------
-    def loads(self) -> dict[str, float]:
+    def loads(self) -> dict[str, float | None]:
         s, model = self.model.scales, self.model
         solid = fluid = 0.0
-        if "l" in model.dofs.fields:
-            solid = self.total(self.nodal("l")[self.mine, 0] @ model.nodal_weights[self.mine])
-        if self.surface is not None and "p" in model.dofs.fields:
+        if model.surface is not None and "l" in model.dofs.fields:
+            solid = self.total(self.nodal("l")[self.mine, 0] @ model.surface.weights[self.mine])
+        if model.surface is not None and "p" in model.dofs.fields:
             fluid = self.total((self.surface.weights * self.surface.value("p")).sum())
         total = solid + fluid
         target = model.operation.force
@@ -99,7 +97,7 @@ class Derived:
                 "load_fluid": fluid * s.force, "load_ratio": ratio,
                 "load_balance_error": error}
 
-    def friction(self, loads: dict[str, float]) -> dict[str, float | None]:
+    def friction(self, loads: dict[str, Any]) -> dict[str, float | None]:
         """mu = (mu_s L_s + T_f) / (L_s + L_f); the fluid's part from the film's shear stress."""
         contact = self.model.scene.contact
         solid = (contact.friction if contact is not None else 0.0) * loads["load_solid"]
@@ -122,9 +120,10 @@ class Derived:
         out: dict[str, float | None] = dict.fromkeys(
             ("approach", "film_min", "contact_length", "contact_left", "contact_right",
              "penetration_length", "contact_pressure_max"))
-        if self.surface is None:
+        if model.surface is None:
             return out
-        radius = model.circle.radius * length if model.circle is not None else None
+        circle = model.surface.circle
+        radius = circle.radius * length if circle is not None else None
         v0 = self.approach() * length
         gap = np.maximum(self.gap()[self.mine], 0.0)
         out |= {"approach": v0, "film_min": self.extreme(gap, False) * length}
@@ -179,7 +178,7 @@ class Derived:
             return dict.fromkeys((*keys, "mass_balance_error"))
         out: dict[str, float | None] = dict.fromkeys(keys, 0.0)
         through = 0.0
-        if self.surface is not None and model.scene.pores is not None:
+        if self.model.surface is not None and model.scene.pores is not None:
             V, s = self.exchange()[self.mine], self.arc()[self.mine]
             flow = V * self.pressure_weights()[self.mine]
             unit = model.scales.volume_flow * model.scene.fluid_density

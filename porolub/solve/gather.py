@@ -87,15 +87,13 @@ def gather_fields(model: Model, x: PETSc.Vec) -> FieldData | None:
 def _pressure_everywhere(d: Derived) -> Array:
     """(nnode, 1) pressure at all nodes of the mesh, interpolated where it has no unknown."""
     model = d.model
-    if model.dofs.fields["p"].degree == model.mesh.degree or model.dofs.fields["p"].support != "body":
-        return d.nodal("p") if model.dofs.fields["p"].degree == model.mesh.degree else _mid_surface(d)
+    field = model.dofs.fields["p"]
+    if field.degree == model.mesh.degree:
+        return d.nodal("p")
+    if field.support != "body":
+        return on_surface_nodes(d, d.nodal("p"))
     domain = Domain("nodes of cells", model.mesh, 0)
     return nodal_average(d, domain, d.at(domain).value("p")[..., None])
-
-
-def _mid_surface(d: Derived) -> Array:
-    """Surface-only pressure (a film without pores) at the surface's displacement nodes."""
-    return on_surface_nodes(d, d.nodal("p"))
 
 
 def on_surface_nodes(d: Derived, vertex_values: Array) -> Array:

@@ -11,6 +11,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from porolub.fem.domains import Domain
+from porolub.terms.plane import Plane
+
 Array = NDArray[np.float64]
 ROUND = 1e-3  # largest misfit, as a share of the surface's own height, that counts as a circle
 
@@ -55,10 +58,24 @@ def surface_circle(scene: Any, mesh: Any, boundary: str | None, length: float) -
     return fit_circle(np.vstack(parts))
 
 
+@dataclass(frozen=True)
+class LubricatedSurface:
+    """The surface that faces the rigid plane (scaled).
+
+    domain: its facets; area: reference measure; weights: (nnode,) integral of each displacement
+    basis function over it; circle: the circle it lies on, if any.
+    """
+
+    name: str
+    plane: Plane
+    domain: Domain
+    area: float
+    weights: Array
+    circle: Circle | None
+
+
 def typical_thickness(mesh: Any, boundary: str | None) -> float:
     """Volume over surface of a user's mesh: its thickness for scaling. Collective."""
-    from porolub.fem.domains import Domain
-
     volume = mesh.comm.allreduce(float(Domain("cells", mesh, 2).weights.sum()))
     if boundary is None or boundary not in mesh.boundary_names:
         return volume ** (1.0 / mesh.dim)

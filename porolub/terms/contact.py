@@ -45,7 +45,8 @@ class Contact:
         phi, by_pressure, by_gap = complementarity(pressure, self.plane.gap(at), self.stiffness)
         direction = at.constant(np.asarray(self.plane.toward)).copy()
         if self.friction:
-            direction += self.friction * self.operation.friction * self.operation.sliding_direction(at.position, at.normal)
+            against = self.operation.sliding_direction(at.position, at.normal)
+            direction += self.friction * self.operation.friction * against
         out.residual("l", VALUE, phi)
         out.residual("u", VALUE, pressure[..., None] * direction)
         if out.wants_jacobian:

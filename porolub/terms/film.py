@@ -10,14 +10,18 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from porolub.fem.dofs import Field
-from porolub.fem.points import GRAD, VALUE, Integrand, Points
+from porolub.fem.points import GRAD, Integrand, Points
 from porolub.laws.lubricant import Newtonian, film_thickness
 from porolub.laws.upwind import upwind_derivative, upwind_function
 from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
 from porolub.terms.term import Part
+
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -43,7 +47,7 @@ class Film:
         blocks = [("p", "p"), *self.plane.blocks("p", self.displacement, self.approach)]
         return [Part(f"facets:{self.boundary}", self.flow, blocks)]
 
-    def flux(self, at: Points) -> np.ndarray:
+    def flux(self, at: Points) -> Array:
         """Volume flux in the film per width, (ne, nq, dim), tangential."""
         h, _ = film_thickness(self.plane.gap(at))
         U = self.operation.entrainment(at.position, at.normal)
@@ -51,7 +55,7 @@ class Film:
         return -self.law.conductance(h)[..., None] * g + h[..., None] / 2.0 * U
 
     @staticmethod
-    def surface_gradient(at: Points) -> np.ndarray:
+    def surface_gradient(at: Points) -> Array:
         g, n = at.grad("p"), at.normal
         return g - np.einsum("...d,...d->...", g, n)[..., None] * n
 
@@ -69,7 +73,7 @@ class Film:
         if self.upwind is not None:
             self._upwind(at, out, h, dh, U)
 
-    def _upwind(self, at: Points, out: Integrand, h, dh, U) -> None:
+    def _upwind(self, at: Points, out: Integrand, h: Array, dh: Array, U: Array) -> None:
         """Streamline diffusion of the film thickness where the elements do not resolve it.
 
         The deformable surface turns U/2 dh/ds into transport of h; film and pores answer a
@@ -77,6 +81,7 @@ class Film:
         gap itself, not of max(0, gap): cut off at a quadrature point it would jump there, and
         Newton would cycle; on closed elements it is zero anyway.
         """
+        assert self.upwind is not None
         modulus, mobility = self.upwind
         speed = np.linalg.norm(U, axis=-1)
         s = U / np.where(speed > 0, speed, 1.0)[..., None]

@@ -40,18 +40,19 @@ class Plane:
 
     def chain_slope(self, at: Points, out: Integrand, test: str, op: bool, by_slope: Array,
                     along: Array) -> None:
-        """Add the tangent of a contribution whose derivative by the slope is ``by_slope``."""
+        """Add the tangent of a flux whose derivative by the slope is ``by_slope`` (.., dim)."""
         if at.has("u"):
-            m = np.asarray(self.toward)
-            dslope = -m[:, None] * along[..., None, :]
-            out.jacobian(test, op, "u", GRAD, by_slope[..., None, None] * dslope[..., None, :, :])  # by_slope is a flux (.., dim)
+            dslope = -np.asarray(self.toward)[:, None] * along[..., None, :]
+            flux = by_slope[..., None, None] * dslope[..., None, :, :]
+            out.jacobian(test, op, "u", GRAD, flux)
 
     def chain(self, at: Points, out: Integrand, test: str, op: bool, by_gap: Array) -> None:
         """Add the tangent of a contribution whose derivative by the gap is ``by_gap``."""
         if at.has("u"):
             m = np.asarray(self.toward)
             rank = by_gap.ndim - 2  # components after (ne, nq)
-            out.jacobian(test, op, "u", VALUE, by_gap[..., None] * (-m).reshape((1,) * rank + (-1,)))
+            by_u = by_gap[..., None] * (-m).reshape((1,) * rank + (-1,))
+            out.jacobian(test, op, "u", VALUE, by_u)
         if at.has("v0"):
             out.jacobian(test, op, "v0", VALUE, -by_gap)
 

@@ -29,7 +29,9 @@ class Part:
 class Term(Protocol):
     """An effect of the scene."""
 
-    name: str
+    @property
+    def name(self) -> str:
+        """What it is called in errors and where terms are picked out."""
 
     def fields(self) -> list[Field]:
         """Unknowns this term adds."""
