@@ -1,0 +1,46 @@
+"""The sequence of meshes a scene is solved on."""
+
+from itertools import pairwise
+from pathlib import Path
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from porolub.solve.steady import COARSEST, Level, levels_of
+from tests.mesh.scenes import sector_file
+from tests.solve.models import block, case1
+
+
+@given(st.integers(1, 1500), st.integers(3, 60), st.sampled_from(["none", "contact"]))
+def test_each_mesh_halves_the_elements_of_the_next_down_to_a_coarse_one(
+    along: int, across: int, grading: str
+) -> None:
+    levels = levels_of(case1(along, across, f"mesh.grading={grading}"))
+    assert levels[-1] == Level(along, across, grading == "contact")
+    assert levels[0].along <= COARSEST
+    assert not any(level.graded for level in levels[:-1])
+    uniform = [level for level in levels if not level.graded] or levels
+    for coarse, fine in pairwise(uniform):
+        assert coarse.along == (fine.along + 1) // 2
+        assert 3 <= coarse.across <= fine.across
+        assert fine.along > COARSEST
+
+
+def test_a_graded_mesh_starts_from_a_uniform_one_of_as_many_elements() -> None:
+    scene = case1(60, 6, "mesh.grading=contact")
+    assert levels_of(scene) == [Level(60, 6), Level(60, 6, True)]
+
+
+def test_the_shipped_mesh_comes_last_of_three() -> None:
+    assert levels_of(case1(300, 30)) == [Level(75, 8), Level(150, 15), Level(300, 30)]
+
+
+def test_what_has_no_contact_or_no_logical_coordinates_is_solved_on_its_own_mesh(
+    tmp_path: Path,
+) -> None:
+    seepage = block(mesh={"along": 300, "across": 30}, boundary={"top": {"traction": "1 kPa"}})
+    assert levels_of(seepage) == [Level(300, 30)]
+    path = sector_file(tmp_path / "sector.msh")
+    scene = case1(1, 1, f"geometry={{shape='file', path='{path}'}}", "mesh.along=", "mesh.across=",
+                  "motion=none", "pores=none")
+    assert len(levels_of(scene)) == 1
