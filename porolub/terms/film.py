@@ -20,7 +20,6 @@ from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
 from porolub.terms.term import Part
 
-
 Array = NDArray[np.float64]
 
 
