@@ -73,6 +73,13 @@ class Newton:
         self.tolerance, self.max_iterations = 1e-9, 40
         self.abort_below = 0.0  # lowest J tolerated
         self.patience = 1000  # strongly shortened steps tolerated before giving up
+        # of the iteration under way
+        self._updates: dict[str, float] = {}
+        self._damping, self._stalled, self._shortened = 1.0, 0, 0
+        self._previous_size = float("inf")
+        self._solve_start: float | None = None
+        self._why = ""
+        self._place: Place | None = None
         start = time.perf_counter()
         self.matrix = system.create_matrix()
         self._residual = self.dofs.vector()

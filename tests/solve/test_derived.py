@@ -163,7 +163,7 @@ def through(bottom: float, top: float, bend: float = 0.0) -> dict[str, float | N
 
 def test_what_enters_leaves_or_is_missed_in_the_balance() -> None:
     assert through(2e5, 5e4)["mass_balance_error"] < 1e-12
-    # bent by B: the slope at the ends changes by -+B on top of the drop of 1.5e5 over three elements
+    # bent by B, the slopes at the two ends change by B (1 - 1/3), in and out of three elements
     drop, bend = 1.5e5, 3e4
     extra = bend * 2 / 3  # slope of y (1 - y) over the first third, in thicknesses
     assert through(2e5, 5e4, bend)["mass_balance_error"] == pytest.approx(
