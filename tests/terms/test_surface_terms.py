@@ -91,6 +91,44 @@ def test_contact_rows_and_tractions(kind, friction):
     np.testing.assert_allclose(force, -(weight * pressure)[:, None] * traction, atol=1e-15)
 
 
+def test_a_sliding_plane_drags_the_skeleton_along():
+    """Friction on a body at rest points where the plane goes; there is none without motion."""
+    mesh, total = meshes.mesh("block"), []
+    for kind in ("sliding", "rest"):
+        at = setting(mesh, "top", kind)
+        of = system(mesh, [Contact(at.plane, at.operation, "top", 1.0, 0.45, True, 2)],
+                    ["u", "v0"], boundary="top")
+        local = np.zeros(of.dofs.size_local)
+        field_values(of.dofs, "l", lambda X: np.full(len(X), 0.2), local)
+        total.append(-of.dofs.field("u", of.local_residual(local)).sum(axis=0))
+    pressed = -0.2 * 3.0 * np.asarray(at.plane.toward)
+    np.testing.assert_allclose(total[1], pressed, atol=TINY)
+    np.testing.assert_allclose(total[0] - pressed, [0.45 * 0.2 * 3.0, 0.0], atol=TINY)
+
+
+@pytest.mark.parametrize("kind", ["sector", "cuboid"])
+def test_flux_of_the_film_is_what_its_rows_balance(kind):
+    """- int flux . grad q, the flux that is reported: Poiseuille against grad p, half the speed."""
+    mesh, boundary = meshes.mesh(kind), meshes.surface(kind)
+    at = setting(mesh, boundary, "rotation" if boundary == "lubricated" else "sliding")
+    film = Film(LUBRICANT, at.plane, at.operation, boundary, True, True, 1, False)
+    of = system(mesh, [film], ["u", "p", "v0"], boundary=boundary)
+    state = smooth(of.dofs)
+    seen = everywhere(of, f"facets:{boundary}", state)
+    flux, h = film.flux(seen), np.maximum(at.plane.gap(seen), 0.0)
+    np.testing.assert_allclose(np.einsum("eqd,eqd->eq", flux, seen.normal), 0.0, atol=1e-12)
+    change = np.random.default_rng(0).standard_normal(of.dofs.size_local)
+    slope = everywhere(of, f"facets:{boundary}", change).grad("p")
+    expected = -np.einsum("eq,eqd,eqd->", seen.weights, flux, slope)
+    found = of.dofs.field("p", change * of.local_residual(state)).sum()
+    assert found == pytest.approx(expected, rel=1e-10)
+    state[of.dofs.range["p"]] = 0.3  # no slope: Couette flow
+    couette = film.flux(everywhere(of, f"facets:{boundary}", state))
+    speed = 0.7 * (meshes.RADIUS if boundary == "lubricated" else 1.0)
+    np.testing.assert_allclose(np.linalg.norm(couette[..., [0, 1]], axis=-1), h * speed / 2,
+                               rtol=1e-3 if boundary == "lubricated" else 1e-12, atol=1e-12)
+
+
 def test_an_open_surface_leaks_and_a_closed_one_does_not():
     mesh = meshes.mesh("sector")
     at = setting(mesh, "lubricated")
