@@ -9,6 +9,7 @@ last and from the right side.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,6 +21,7 @@ from porolub.solve.newton import Newton, NewtonResult
 PRESSED_IN = 0.05  # first guess of the approach for a straight start, thicknesses
 LIFTED = -0.01  # where the plane starts in the physical start-up
 STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3, "j": np.inf}
+SMALLEST_SHARE = 2e-3  # of load or friction, below which a ramp is given up
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,48 @@ class Starter:
         """Steady Newton from x."""
         self.model.operation.rate = 0.0
         return self.newton.solve(x, stage, 1.0, max_iterations=max_iterations)
+
+    def ramped(self, x: PETSc.Vec) -> NewtonResult:
+        """For a dry scene, which has no time to start up in: the load first, then its friction.
+
+        From x, in place; each is raised in steps that follow Newton's ease.
+        """
+        operation, newton = self.model.operation, self.newton
+        force, approach = operation.force, operation.approach
+        limits, newton.limits = newton.limits, dict.fromkeys(STEP_LIMIT, 1.0)
+
+        def load(share: float) -> None:
+            operation.friction = 0.0
+            operation.force = None if force is None else share * force
+            operation.approach = share * approach
+
+        def friction(share: float) -> None:
+            operation.friction = share
+
+        result = self._raise(x, "load", load)
+        if result.converged:
+            result = self._raise(x, "friction", friction)
+        operation.force, operation.approach, operation.friction = force, approach, 1.0
+        newton.limits = limits
+        return result
+
+    def _raise(self, x: PETSc.Vec, stage: str, apply: Callable[[float], None]) -> NewtonResult:
+        """Bring a share from 0 to 1 in adaptive steps."""
+        share, step = 0.0, 0.25
+        while True:
+            apply(min(1.0, share + step))
+            trial = x.copy()
+            result = self.newton.solve(trial, stage, min(1.0, share + step), max_iterations=12)
+            if result.converged:
+                share += step
+                trial.copy(x)
+                step *= 1.5 if result.iterations <= 7 else 1.0
+            else:
+                self.rejected += 1
+                step *= 0.4
+            trial.destroy()
+            if share >= 1.0 or step < SMALLEST_SHARE:
+                return result
 
     def physical(self, x: PETSc.Vec, settle: bool = False,
                  options: StartUp = StartUp()) -> NewtonResult:

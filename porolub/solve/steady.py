@@ -171,17 +171,25 @@ class SteadySolver:
             settle = False
         if self.scene.pores is not None or self.scene.film is not None:
             log.info("%s: straight Newton failed (%s); starting up in time", name, result.why)
-            result = starter.physical(x, settle, StartUp(first_step=3e-3, steps=60) if settle else StartUp())
-            self.rejected += starter.rejected
+            options = StartUp(first_step=3e-3, steps=60) if settle else StartUp()
+            result = starter.physical(x, settle, options)
+        else:
+            log.info("%s: straight Newton failed (%s); ramping", name, result.why)
+            x.destroy()
+            x = starter.zero(PRESSED_IN)
+            result = starter.ramped(x)
+        self.rejected += starter.rejected
         return x, result
 
     def _advice(self, why: str) -> str:
         """What failed and what to try, in this scene."""
         contact, solid = self.scene.contact, self.scene.solid
-        if contact is not None and contact.friction_traction and solid.base == "sliding":
+        wet = self.scene.pores is not None
+        if contact is not None and contact.friction_traction and solid.base == "sliding" and wet:
             tip = ('friction drags a layer that slides on its base, and the suction this causes '
                    'feeds back on the load, so there may be no steady state: try solid.base = '
-                   '"bonded", contact.friction_traction = false or a smaller contact.friction')
+                   '"bonded", contact.friction_traction = false, a smaller contact.friction or '
+                   'conventions.entering = "fresh"')
         else:
             tip = ("try a finer mesh or mesh.grading = \"contact\", a smaller load or speed, and "
                    "look at the last state in the output")
