@@ -45,14 +45,14 @@ def preallocate(mat: PETSc.Mat, rows: NDArray[np.int32], cols: NDArray[np.int32]
     rows = np.ascontiguousarray(rows, dtype=PETSc.IntType)
     cols = np.ascontiguousarray(cols, dtype=PETSc.IntType)
     _check(petsc_library().MatSetPreallocationCOO(mat.handle, len(rows), rows.ctypes.data,
-                                           cols.ctypes.data))
+                                                  cols.ctypes.data))
 
 
 def insert(mat: PETSc.Mat, values: Array) -> None:
     """Set all values, in the order of the pattern; repeated entries are summed."""
     values = np.ascontiguousarray(values, dtype=np.float64)
     _check(petsc_library().MatSetValuesCOO(mat.handle, values.ctypes.data,
-                                    int(PETSc.InsertMode.INSERT)))
+                                           int(PETSc.InsertMode.INSERT)))
 
 
 @contextmanager

@@ -8,9 +8,7 @@
  *   variant    : (ne)                     which table rows an entity uses (its local face)
  *   invJ       : (ne, nq, dim, dim)       d(xi_r)/d(x_d)
  *   w          : (ne, nq)                 quadrature weight times measure
- *   dofs       : (ne, nn)                 local number of a node's first component, -1: absent
- * Element matrices are (test node, test component, trial component, trial node), each test
- * node's row padded to pl_padded(ci * cj * nj) numbers. */
+ *   dofs       : (ne, nn)                 local number of a node's first component, -1: absent */
 #include <Python.h>
 #include <stdlib.h>
 #include <string.h>
@@ -19,28 +17,38 @@
 #define W 8 /* doubles per vector */
 #define MAXROWS 4
 #define MAXPANEL 5
-#else
+#define ZIP_LOW ((lanes){0, 8, 1, 9, 2, 10, 3, 11})
+#define ZIP_HIGH ((lanes){4, 12, 5, 13, 6, 14, 7, 15})
+#elif defined(__AVX__)
 #define W 4
 #define MAXROWS 3
 #define MAXPANEL 4
+#define ZIP_LOW ((lanes){0, 4, 1, 5})
+#define ZIP_HIGH ((lanes){2, 6, 3, 7})
+#else
+#define W 2
+#define MAXROWS 3
+#define MAXPANEL 4
+#define ZIP_LOW ((lanes){0, 2})
+#define ZIP_HIGH ((lanes){1, 3})
 #endif
+#define GROUP 64 /* element matrices computed before they are scattered */
 #define PAD(n) (((n) + W - 1) / W * W)
 #define INLINE static inline __attribute__((always_inline))
 
 typedef double vec __attribute__((vector_size(8 * W), aligned(8), may_alias));
+typedef long long lanes __attribute__((vector_size(8 * W)));
 
-int pl_padded(int n) { return PAD(n); }
-
-/* C (rows, panel vectors) = or += A^T T over k; all loops unroll, the sums stay in registers */
+/* C (rows, panel vectors) = A^T T over k; all loops unroll, the sums stay in registers */
 INLINE void tile(int rows, int panel, int nk, const double *A, int lda, const double *T, int ldt,
-                 double *C, int ldc, int add)
+                 double *C, int ldc)
 {
     vec sum[MAXROWS][MAXPANEL];
 #pragma GCC unroll 8
     for (int i = 0; i < rows; i++)
 #pragma GCC unroll 8
         for (int p = 0; p < panel; p++)
-            sum[i][p] = add ? *(const vec *)(C + i * ldc + p * W) : (vec){0};
+            sum[i][p] = (vec){0};
     for (int k = 0; k < nk; k++) {
 #pragma GCC unroll 8
         for (int p = 0; p < panel; p++) {
@@ -55,16 +63,16 @@ INLINE void tile(int rows, int panel, int nk, const double *A, int lda, const do
         for (int p = 0; p < panel; p++) *(vec *)(C + i * ldc + p * W) = sum[i][p];
 }
 
-/* C (m, n) = or += A^T T with A (nk, m), T (nk, n); rows of T and C are padded */
+/* C (m, n) = A^T T with A (nk, m), T (nk, n); rows of T and C are padded */
 static void product(int nk, int m, int n, const double *A, int lda, const double *T, int ldt,
-                    double *C, int ldc, int add)
+                    double *C, int ldc)
 {
     const int nv = PAD(n) / W;
     const int panels = (nv + MAXPANEL - 1) / MAXPANEL, panel = (nv + panels - 1) / panels;
     const int blocks = (m + MAXROWS - 1) / MAXROWS, block = (m + blocks - 1) / blocks;
 #define TILE(r, p) \
     case (r) * 8 + (p): \
-        tile(r, p, nk, A + i, lda, T + v * W, ldt, C + (size_t)i * ldc + v * W, ldc, add); \
+        tile(r, p, nk, A + i, lda, T + v * W, ldt, C + (size_t)i * ldc + v * W, ldc); \
         break;
 #define TILES(r) TILE(r, 1) TILE(r, 2) TILE(r, 3) TILE(r, 4)
     for (int v = 0; v < nv; v += panel)
@@ -87,6 +95,19 @@ static double *padded(size_t rows, int nn, const double *table)
     return out;
 }
 
+/* physical gradients out (nq, nc, dim) of an entity from reference ones h (nc, nq, dim), ld */
+INLINE void pushed_forward(int nq, int dim, int nc, int ld, const double *invJ, const double *h,
+                           double *out)
+{
+    for (int q = 0; q < nq; q++, invJ += dim * dim, h += dim)
+        for (int c = 0; c < nc; c++)
+            for (int d = 0; d < dim; d++) {
+                double s = 0.0;
+                for (int k = 0; k < dim; k++) s += h[c * ld + k] * invJ[k * dim + d];
+                *out++ = s;
+            }
+}
+
 /* out (ne, nq, nc[, dim]) = the field or its gradient at the points */
 void pl_evaluate(int ne, int nq, int dim, int variants, int nn, int nc, int grad,
                  const double *table, const int *variant, const double *invJ, const int *dofs,
@@ -94,34 +115,37 @@ void pl_evaluate(int ne, int nq, int dim, int variants, int nn, int nc, int grad
 {
     const int rows = grad ? dim : 1, n = nq * rows, ld = PAD(n);
     double *turned = calloc((size_t)variants * nn * ld, sizeof(double)); /* (variant, node, point) */
-    double *at = malloc((nc * ld + nn * nc) * sizeof(double)), *xe = at + nc * ld;
+    double *h = malloc((nc * ld + nn * nc) * sizeof(double)), *xe = h + nc * ld;
     for (int v = 0; v < variants; v++)
         for (int k = 0; k < n; k++)
             for (int i = 0; i < nn; i++)
                 turned[((size_t)v * nn + i) * ld + k] = table[((size_t)v * n + k) * nn + i];
-    for (int e = 0; e < ne; e++) {
-        for (int i = 0; i < nn; i++) {
-            const int k = dofs[(size_t)e * nn + i];
-            for (int c = 0; c < nc; c++) xe[i * nc + c] = k < 0 ? 0.0 : x[k + c];
-        }
-        product(nn, nc, n, xe, nc, turned + (size_t)variant[e] * nn * ld, ld, at, ld, 0);
-        for (int q = 0; q < nq; q++) {
-            const size_t eq = (size_t)e * nq + q;
-            const double *iJ = invJ + eq * dim * dim;
-            double *o = out + eq * nc * rows;
-            for (int c = 0; c < nc; c++) {
-                const double *h = at + c * ld + q * rows;
-                if (!grad) o[c] = h[0];
-                else if (dim == 2)
-                    for (int d = 0; d < 2; d++) o[c * 2 + d] = h[0] * iJ[d] + h[1] * iJ[2 + d];
-                else
-                    for (int d = 0; d < 3; d++)
-                        o[c * 3 + d] = h[0] * iJ[d] + h[1] * iJ[3 + d] + h[2] * iJ[6 + d];
-            }
-        }
+    for (int e = 0; e < ne; e++, invJ += nq * dim * dim, out += n * nc, dofs += nn) {
+        for (int i = 0; i < nn; i++)
+            for (int c = 0; c < nc; c++) xe[i * nc + c] = dofs[i] < 0 ? 0.0 : x[dofs[i] + c];
+        product(nn, nc, n, xe, nc, turned + (size_t)variant[e] * nn * ld, ld, h, ld);
+        if (!grad)
+            for (int q = 0; q < nq; q++)
+                for (int c = 0; c < nc; c++) out[q * nc + c] = h[c * ld + q];
+        else if (dim == 2 && nc == 2) pushed_forward(nq, 2, 2, ld, invJ, h, out);
+        else if (dim == 2 && nc == 1) pushed_forward(nq, 2, 1, ld, invJ, h, out);
+        else pushed_forward(nq, dim, nc, ld, invJ, h, out);
     }
     free(turned);
-    free(at);
+    free(h);
+}
+
+/* out (nq, rows, nc) = w invJ f at the points of an entity (w f for values), f (nq, nc[, dim]) */
+INLINE void pulled_back(int nq, int dim, int nc, const double *invJ, const double *w,
+                        const double *f, double *out)
+{
+    for (int q = 0; q < nq; q++, invJ += dim * dim, f += nc * dim)
+        for (int k = 0; k < dim; k++)
+            for (int c = 0; c < nc; c++) {
+                double s = 0.0;
+                for (int d = 0; d < dim; d++) s += invJ[k * dim + d] * f[c * dim + d];
+                *out++ = w[q] * s;
+            }
 }
 
 /* r[dof] += sum_q w f . (test value or gradient);  f (ne, nq, nc[, dim]) */
@@ -131,139 +155,164 @@ void pl_residual(int ne, int nq, int dim, int variants, int nn, int nc, int grad
 {
     const int rows = grad ? dim : 1, nk = nq * rows, ld = PAD(nn);
     double *tab = padded((size_t)variants * nk, nn, table);
-    double *fref = malloc((nk * nc + nc * ld) * sizeof(double)), *re = fref + nk * nc;
-    for (int e = 0; e < ne; e++) {
-        for (int q = 0; q < nq; q++) {
-            const size_t eq = (size_t)e * nq + q;
-            const double *fq = f + eq * nc * rows, *iJ = invJ + eq * dim * dim;
-            double *o = fref + q * rows * nc;
-            for (int c = 0; c < nc; c++) {
-                if (!grad) o[c] = w[eq] * fq[c];
-                else
-                    for (int k = 0; k < dim; k++) {
-                        double s = 0.0;
-                        for (int d = 0; d < dim; d++) s += iJ[k * dim + d] * fq[c * dim + d];
-                        o[k * nc + c] = w[eq] * s;
-                    }
-            }
-        }
-        product(nk, nc, nn, fref, nc, tab + (size_t)variant[e] * nk * ld, ld, re, ld, 0);
+    double *fe = malloc((nk * nc + nc * ld) * sizeof(double)), *re = fe + nk * nc;
+    for (int e = 0; e < ne; e++, f += nk * nc, w += nq, invJ += nq * dim * dim) {
+        if (!grad)
+            for (int k = 0; k < nq * nc; k++) fe[k] = w[k / nc] * f[k];
+        else if (dim == 2 && nc == 2) pulled_back(nq, 2, 2, invJ, w, f, fe);
+        else if (dim == 2 && nc == 1) pulled_back(nq, 2, 1, invJ, w, f, fe);
+        else pulled_back(nq, dim, nc, invJ, w, f, fe);
+        product(nk, nc, nn, fe, nc, tab + (size_t)variant[e] * nk * ld, ld, re, ld);
         for (int i = 0; i < nn; i++) {
             const int k = dofs[(size_t)e * nn + i];
-            if (k < 0) continue;
-            for (int c = 0; c < nc; c++) r[k + c] += re[c * ld + i];
+            for (int c = 0; c < nc && k >= 0; c++) r[k + c] += re[c * ld + i];
         }
     }
     free(tab);
-    free(fref);
+    free(fe);
 }
 
-/* physical basis rows at the points of an entity: (nq, rows, ld), from the padded table */
-INLINE void basis(int nq, int dim, int ld, const double *tab, const double *invJ, double *B)
+/* physical basis rows (nq, rows, ld) at the points of an entity, times w if given */
+INLINE void gradients(int nq, int dim, int ld, const double *tab, const double *invJ,
+                      const double *w, double *B)
 {
     for (int q = 0; q < nq; q++, tab += dim * ld, B += dim * ld, invJ += dim * dim)
         for (int d = 0; d < dim; d++)
             for (int v = 0; v < ld; v += W) {
-                vec s = invJ[d] * *(const vec *)(tab + v);
+                vec s = (w ? w[q] : 1.0) * invJ[d] * *(const vec *)(tab + v);
                 for (int k = 1; k < dim; k++)
-                    s += invJ[k * dim + d] * *(const vec *)(tab + k * ld + v);
+                    s += (w ? w[q] : 1.0) * invJ[k * dim + d] * *(const vec *)(tab + k * ld + v);
                 *(vec *)(B + d * ld + v) = s;
             }
 }
 
-/* T (nq, ti, ci, cj, nj) = w g . trial; whole vectors, each overwritten by its successor's start */
-INLINE void flux_of_trial(int nq, int ti, int ci, int cj, int tj, int nj, int ld, int ldt,
-                          const double *w, const double *g, const double *B, double *T)
+/* basis rows of one side: gradients or values, in room B, or the table where it serves as it is */
+static const double *basis(int grad, int nq, int dim, int ld, const double *tab,
+                           const double *invJ, const double *w, double *B)
 {
+    if (!grad && !w) return tab;
+    if (!grad)
+        for (int q = 0; q < nq; q++)
+            for (int v = 0; v < ld; v += W)
+                *(vec *)(B + q * ld + v) = w[q] * *(const vec *)(tab + q * ld + v);
+    else if (dim == 2 && ld == W) gradients(nq, 2, W, tab, invJ, w, B);
+    else if (dim == 2 && ld == 2 * W) gradients(nq, 2, 2 * W, tab, invJ, w, B);
+    else gradients(nq, dim, ld, tab, invJ, w, B);
+    return B;
+}
+
+/* T (nq, ti, ci, nj, cj) = g . B; whole vectors, what is beyond a row is overwritten by the next */
+INLINE void flux_of_trial(int nq, int ti, int ci, int cj, int tj, int nj, int ld, int ldt,
+                          const double *g, const double *B, double *T)
+{
+    vec y[3];
     for (int q = 0; q < nq; q++, B += tj * ld, g += ci * ti * cj * tj)
         for (int a = 0; a < ti; a++, T += ldt)
             for (int c = 0; c < ci; c++)
-                for (int d = 0; d < cj; d++) {
-                    const double *s = g + ((c * ti + a) * cj + d) * tj;
-                    double *t = T + (c * cj + d) * nj;
-                    for (int v = 0; v < ld; v += W) {
-                        vec y = w[q] * s[0] * *(const vec *)(B + v);
-                        for (int b = 1; b < tj; b++)
-                            y += w[q] * s[b] * *(const vec *)(B + b * ld + v);
-                        *(vec *)(t + v) = y;
+                for (int v = 0; v < ld; v += W) {
+                    double *t = T + (c * nj + v) * cj;
+                    for (int d = 0; d < cj; d++) {
+                        const double *s = g + ((c * ti + a) * cj + d) * tj;
+                        y[d] = s[0] * *(const vec *)(B + v);
+                        for (int b = 1; b < tj; b++) y[d] += s[b] * *(const vec *)(B + b * ld + v);
                     }
+                    if (cj == 1) *(vec *)t = y[0];
+                    else if (cj == 2) {
+                        *(vec *)t = __builtin_shuffle(y[0], y[1], ZIP_LOW);
+                        if (v + W / 2 < nj) *(vec *)(t + W) = __builtin_shuffle(y[0], y[1], ZIP_HIGH);
+                    } else
+                        for (int k = 0; k < W && v + k < nj; k++)
+                            for (int d = 0; d < cj; d++) t[k * cj + d] = y[d][k];
                 }
 }
 
-/* K = or += sum_q w test g trial;  g (ne, nq, ci[, dim], cj[, dim]) */
+/* K <- R^T K (test side) or K R (trial side) at nodes with a frame number >= 0 */
+static void rotate(int dim, const int *frame_of, const double *frames, int trial, int ni, int ci,
+                   int cj, int nj, int ld, double *K)
+{
+    const int step = trial ? 1 : nj * cj; /* between components of the rotated side */
+    const int others = trial ? ni * ci : nj * cj;
+    for (int i = 0; i < (trial ? nj : ni); i++) {
+        if (frame_of[i] < 0) continue;
+        const double *R = frames + (size_t)frame_of[i] * dim * dim;
+        for (int o = 0; o < others; o++) {
+            double *k = trial ? K + o / ci * ld + (o % ci * nj + i) * cj : K + i * ld + o;
+            double s[3] = {0.0, 0.0, 0.0};
+            for (int a = 0; a < dim; a++)
+                for (int b = 0; b < dim; b++) s[b] += R[a * dim + b] * k[a * step];
+            for (int b = 0; b < dim; b++) k[b * step] = s[b];
+        }
+    }
+}
+
+/* values[slot + component] += K; rows of n trial nodes with cj components each */
+INLINE void scatter(int rows, int ci, int n, int cj, int ld, const double *K, const int *slots,
+                    double *values)
+{
+    for (int i = 0; i < rows; i++, K += ld)
+        for (int j = 0; j < ci * n; j++, slots++)
+            if (*slots >= 0)
+                for (int d = 0; d < cj; d++) values[*slots + d] += K[j * cj + d];
+}
+
+/* values[slots] += sum_q w test g trial;  g (ne, nq, ci[, dim], cj[, dim])
+ * Element matrices are (test node, test component, trial node, trial component); slots (ne, ni,
+ * ci, nj) say where the first trial component goes, its others follow; -1: dropped.
+ * The `turned` entities have nodes in rotated frames: frame_i (turned, ni), frame_j (turned, nj)
+ * number the frames, -1: none; NULL: no such side. */
 void pl_matrix(int ne, int nq, int dim, int variants, int ni, int ci, int gi, const double *tabi,
                int nj, int cj, int gj, const double *tabj, const int *variant,
-               const double *invJ, const double *w, const double *g, int add, double *K)
+               const double *invJ, const double *w, const double *g, int turned,
+               const int *entities, const int *frame_i, const int *frame_j, const double *frames,
+               const int *slots, double *values)
 {
     const int ti = gi ? dim : 1, tj = gj ? dim : 1, n = ci * cj * nj;
     const int li = PAD(ni), lj = PAD(nj), ldt = PAD(n);
     double *pi = padded((size_t)variants * nq * ti, ni, tabi);
     double *pj = padded((size_t)variants * nq * tj, nj, tabj);
-    double *T = calloc(nq * (ti * ldt + ti * li + tj * lj) + W, sizeof(double));
-    double *Bi = T + nq * ti * ldt + W, *Bj = Bi + nq * ti * li;
+    double *T = calloc(nq * (ti * ldt + ti * li + tj * lj) + 3 * W + GROUP * ni * ldt,
+                       sizeof(double));
+    double *Bi = T + nq * ti * ldt + 3 * W, *Bj = Bi + nq * ti * li, *K = Bj + nq * tj * lj;
     for (int e = 0; e < ne; e++) {
-        const double *iJ = invJ + (size_t)e * nq * dim * dim, *we = w + (size_t)e * nq;
+        const double *iJ = invJ + (size_t)e * nq * dim * dim;
         const double *ge = g + (size_t)e * nq * ci * ti * cj * tj;
         const double *test = pi + (size_t)variant[e] * nq * ti * li;
         const double *trial = pj + (size_t)variant[e] * nq * tj * lj;
-#define SPECIAL(D, LD) if (dim == D && ld == LD) basis(nq, D, LD, tab, iJ, B)
-#define BASIS(grad, tab_, ld_, B_) \
-    if (grad) { \
-        const double *tab = tab_; const int ld = ld_; double *B = B_; \
-        SPECIAL(2, W); else SPECIAL(2, 2 * W); else SPECIAL(3, W); else basis(nq, dim, ld, tab, iJ, B); \
-        tab_ = B; \
-    }
-        BASIS(gi, test, li, Bi)
-        BASIS(gj, trial, lj, Bj)
-        if (gi && gj && dim == 2 && cj == 2 && lj == 2 * W)
-            flux_of_trial(nq, 2, ci, 2, 2, nj, 2 * W, ldt, we, ge, trial, T);
-        else if (gj && dim == 2 && lj == W)
-            flux_of_trial(nq, ti, ci, cj, 2, nj, W, ldt, we, ge, trial, T);
-        else if (!gj && lj == W)
-            flux_of_trial(nq, ti, ci, cj, 1, nj, W, ldt, we, ge, trial, T);
-        else
-            flux_of_trial(nq, ti, ci, cj, tj, nj, lj, ldt, we, ge, trial, T);
-        product(nq * ti, ni, n, test, li, T, ldt, K + (size_t)e * ni * ldt, ldt, add);
+        for (int k = 0; k < ni * ci * nj; k += 2) /* memory may fetch what the group adds to */
+            __builtin_prefetch(values + slots[e % GROUP * ni * ci * nj + k], 1, 2);
+        test = basis(gi, nq, dim, li, test, iJ, NULL, Bi);
+        basis(gj, nq, dim, lj, trial, iJ, w + (size_t)e * nq, Bj);
+#define FLUX(ti, ci, cj, tj, ld) flux_of_trial(nq, ti, ci, cj, tj, nj, ld, ldt, ge, Bj, T)
+#define IF_FLUX(ti_, ci_, cj_, tj_, ld_) \
+    if (ti == ti_ && ci == ci_ && cj == cj_ && tj == tj_ && lj == ld_) FLUX(ti_, ci_, cj_, tj_, ld_)
+        IF_FLUX(2, 2, 2, 2, 2 * W); /* the blocks of plane strain with trip counts known */
+        else IF_FLUX(2, 2, 1, 1, W);
+        else IF_FLUX(2, 1, 2, 2, 2 * W);
+        else IF_FLUX(2, 1, 1, 2, W);
+        else IF_FLUX(1, 1, 2, 2, 2 * W);
+        else IF_FLUX(1, 1, 1, 1, W);
+        else FLUX(ti, ci, cj, tj, lj);
+        product(nq * ti, ni, n, test, li, T, ldt, K, ldt);
+        if (turned && *entities == e) {
+            if (frame_i) rotate(dim, frame_i, frames, 0, ni, ci, cj, nj, ldt, K);
+            if (frame_j) rotate(dim, frame_j, frames, 1, ni, ci, cj, nj, ldt, K);
+            turned--, entities++;
+            if (frame_i) frame_i += ni;
+            if (frame_j) frame_j += nj;
+        }
+        K += ni * ldt;
+        if ((e + 1) % GROUP == 0 || e + 1 == ne) {
+            const int rows = (e % GROUP + 1) * ni;
+            K -= rows * ldt;
+            if (cj == 1) scatter(rows, ci, nj, 1, ldt, K, slots, values);
+            else if (cj == 2) scatter(rows, ci, nj, 2, ldt, K, slots, values);
+            else scatter(rows, ci, nj, 3, ldt, K, slots, values);
+            slots += (size_t)rows * ci * nj;
+        }
     }
     free(pi);
     free(pj);
     free(T);
-}
-
-/* K <- R^T K (test side) or K R (trial side) at nodes stored in a rotated frame.
- * entities (count): which of the batch; frame_of (count, nn): frame number of a node, or -1. */
-void pl_rotate(int count, const int *entities, int dim, const int *frame_of, const double *frames,
-               int trial, int ni, int ci, int cj, int nj, double *K)
-{
-    const int ld = PAD(ci * cj * nj), nn = trial ? nj : ni;
-    const int step = trial ? nj : cj * nj; /* between components of the rotated side */
-    const int others = trial ? ni * ci : cj * nj;
-    for (int n = 0; n < count; n++)
-        for (int i = 0; i < nn; i++) {
-            const int f = frame_of[(size_t)n * nn + i];
-            if (f < 0) continue;
-            const double *R = frames + (size_t)f * dim * dim;
-            double *Ke = K + (size_t)entities[n] * ni * ld;
-            for (int o = 0; o < others; o++) {
-                double *k = trial ? Ke + (o / ci) * ld + (o % ci) * cj * nj + i : Ke + i * ld + o;
-                double s[3] = {0.0, 0.0, 0.0};
-                for (int a = 0; a < dim; a++)
-                    for (int b = 0; b < dim; b++) s[b] += R[a * dim + b] * k[a * step];
-                for (int b = 0; b < dim; b++) k[b * step] = s[b];
-            }
-        }
-}
-
-/* values[slot] += K; slots (ne, ni, n), -1: dropped */
-void pl_scatter(int ne, int ni, int n, const double *K, const int *slots, double *values)
-{
-    const int ld = PAD(n);
-    for (size_t row = 0; row < (size_t)ne * ni; row++) {
-        const double *k = K + row * ld;
-        const int *s = slots + row * n;
-        for (int j = 0; j < n; j++)
-            if (s[j] >= 0) values[s[j]] += k[j];
-    }
 }
 
 /* slots (ne, nr, nc): where each (row, column) of an entity stands in the sorted CSR pattern */

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -10,6 +12,26 @@ from porolub.laws.compiled import load, ptr
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Side = tuple[Array, bool, int, int]  # table, is gradient, nodes, components
+
+
+@dataclass(frozen=True)
+class Turned:
+    """Entities with nodes stored in a rotated frame: K <- R^T K R there.
+
+    entities: (k,), ascending; test and trial: (k, nodes of that side) frame numbers, -1: none,
+    or None for a side that is never rotated; frames: (m, dim, dim).
+    """
+
+    entities: Ints
+    test: Ints | None
+    trial: Ints | None
+    frames: Array
+
+    def within(self, rows: slice) -> Turned:
+        """Those of a batch, numbered from its start."""
+        first, last = np.searchsorted(self.entities, (rows.start, rows.stop))
+        test, trial = (None if k is None else k[first:last] for k in (self.test, self.trial))
+        return Turned(self.entities[first:last] - np.int32(rows.start), test, trial, self.frames)
 
 
 _lib = load("porolub.fem._kernels")
@@ -33,33 +55,23 @@ def residual(table: Array, grad: bool, variant: Ints, inverse: Array, weights: A
                      ptr(variant), ptr(inverse), ptr(weights), ptr(f), ptr(dofs), ptr(r))
 
 
-def matrix_buffer(entities: int, test: tuple[int, int], trial: tuple[int, int]) -> Array:
-    """Room for element matrices (entities, test nodes, padded row); sides are (nodes, comps)."""
-    (ni, ci), (nj, cj) = test, trial
-    return np.zeros((entities, ni, _lib.pl_padded(ci * cj * nj)))
-
-
 def matrix(test: Side, trial: Side, variant: Ints, inverse: Array, weights: Array, g: Array,
-           out: Array, add: bool) -> None:
-    """Put (or add) the integral of test . g . trial into element matrices ``out``."""
+           turned: Turned | None, slots: Ints, values: Array) -> None:
+    """Add the integral of test . g . trial to values[slots].
+
+    slots (ne, test nodes * components, trial nodes) say where the first trial component goes,
+    its others follow; -1: dropped.
+    """
     ne, nq, dim = inverse.shape[:3]
     (ti, gi, ni, ci), (tj, gj, nj, cj) = test, trial
+    if turned is None:
+        rotation = (0, None, None, None, None)
+    else:
+        sides = [None if k is None else ptr(k) for k in (turned.test, turned.trial)]
+        rotation = (len(turned.entities), ptr(turned.entities), *sides, ptr(turned.frames))
     _lib.pl_matrix(ne, nq, dim, len(ti), ni, ci, int(gi), ptr(ti), nj, cj, int(gj), ptr(tj),
-                   ptr(variant), ptr(inverse), ptr(weights), ptr(g), int(add), ptr(out))
-
-
-def rotate(entities: Ints, frame_of: Ints, frames: Array, on_trial: bool, test: tuple[int, int],
-           trial: tuple[int, int], out: Array) -> None:
-    """K <- R^T K or K R in place; frame_of (len(entities), nodes) numbers the frames, -1: none."""
-    (ni, ci), (nj, cj) = test, trial
-    _lib.pl_rotate(len(entities), ptr(entities), frames.shape[-1], ptr(frame_of), ptr(frames),
-                   int(on_trial), ni, ci, cj, nj, ptr(out))
-
-
-def scatter(element_matrices: Array, slots: Ints, values: Array) -> None:
-    """values[slots] += element matrices; slots (ne, test nodes, row), -1 is dropped."""
-    ne, ni, n = slots.shape
-    _lib.pl_scatter(ne, ni, n, ptr(element_matrices), ptr(slots), ptr(values))
+                   ptr(variant), ptr(inverse), ptr(weights), ptr(g), *rotation, ptr(slots),
+                   ptr(values))
 
 
 def slots(rows: Ints, cols: Ints, indptr: Ints, indices: Ints) -> Ints:

@@ -92,22 +92,25 @@ class Points:
 class Integrand:
     """Sums of pointwise residual fluxes and tangents, keyed by test (and trial) slot.
 
-    ``weight`` multiplies an array: a number, or one (ne, nq) per point.
+    ``weight`` multiplies an array: a number, or one (ne, nq) per point.  Terms may add what is
+    not wanted; it is ignored.
     """
 
-    def __init__(self, jacobian: bool) -> None:
-        self.wants_jacobian = jacobian
+    def __init__(self, jacobian: bool, residual: bool = True) -> None:
+        self.wants_jacobian, self.wants_residual = jacobian, residual
         self.f: dict[Slot, Array] = {}
         self.g: dict[tuple[Slot, Slot], Array] = {}
 
     def residual(self, field: str, op: bool, array: Array, weight: Array | float = 1.0) -> None:
-        key = (field, op)
-        self.f[key] = _add(self.f.get(key), array, weight)
+        if self.wants_residual:
+            key = (field, op)
+            self.f[key] = _add(self.f.get(key), array, weight)
 
     def jacobian(self, test: str, op: bool, trial: str, trial_op: bool, array: Array,
                  weight: Array | float = 1.0) -> None:
-        key = ((test, op), (trial, trial_op))
-        self.g[key] = _add(self.g.get(key), array, weight)
+        if self.wants_jacobian:
+            key = ((test, op), (trial, trial_op))
+            self.g[key] = _add(self.g.get(key), array, weight)
 
 
 def _add(total: Array | None, array: Array, weight: Array | float) -> Array:

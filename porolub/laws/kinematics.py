@@ -24,7 +24,7 @@ class Deformation:
 
     @cached_property
     def F(self) -> Array:
-        return self.H + np.eye(self.dim)
+        return tensors.combine(1.0, self.H, 1.0, np.eye(self.dim))
 
     @cached_property
     def _closed_form(self) -> tuple[Array, Array, Array]:

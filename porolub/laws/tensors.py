@@ -6,6 +6,8 @@ The formulas are in the docstrings; tests compare them, written in NumPy, with w
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,20 +29,23 @@ def _tensor(A: Array, points: int) -> tuple[Array, int]:
     """A tensor per point, or one repeated without a copy, with its stride."""
     if points and A.size and not any(A.strides[:points]):
         return contiguous(A[(0,) * points]), 0
-    return contiguous(A), int(np.prod(A.shape[points:]))
+    return contiguous(A), math.prod(A.shape[points:])
 
 
 def combine(a: Array | float, A: Array, b: Array | float = 0.0, B: Array | None = None) -> Array:
-    """a A + b B with a and b numbers or arrays over the points; A and B of one shape."""
-    points = max(np.ndim(a), np.ndim(b))
+    """a A + b B with a and b numbers or arrays over the points.
+
+    B has the shape of A, or of a single tensor that stands for all points.
+    """
     B = A if B is None else B
+    points = max(np.ndim(a), np.ndim(b), A.ndim - B.ndim)
     (a, da), (b, db) = _coefficient(a), _coefficient(b)
-    n = int(np.prod(A.shape[:points]))
-    (A0, dA), (B0, dB) = _tensor(A, points), _tensor(B, points)
+    (A0, dA), (B0, dB) = _tensor(A, points), _tensor(B, points if A.ndim == B.ndim else 0)
     out = np.empty(A.shape)
-    if n:
-        _lib.pt_combine(n, out.size // n, ptr(a), da, ptr(A0), dA, ptr(b), db, ptr(B0), dB,
-                        ptr(out))
+    if out.size:
+        n = math.prod(A.shape[:points])
+        _lib.pt_combine(n, out.size // n, ptr(a), da, ptr(A0), dA, ptr(b), db, ptr(B0),
+                        dB if A.ndim == B.ndim else 0, ptr(out))
     return out
 
 
@@ -49,7 +54,7 @@ def outer(A: Array, B: Array) -> Array:
     points = A.ndim - 1
     A, B = contiguous(A), contiguous(B)
     out = np.empty((*A.shape, *B.shape[points:]))
-    n, rows = int(np.prod(A.shape[:points])), A.shape[-1]
+    n, rows = math.prod(A.shape[:points]), A.shape[-1]
     _lib.pt_outer(n, rows, out.size // max(1, A.size), ptr(A), ptr(B), ptr(out))
     return out
 

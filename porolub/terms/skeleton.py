@@ -28,6 +28,7 @@ class Skeleton:
 
     def momentum(self, at: Points, out: Integrand) -> None:
         d = at.deformation
-        out.residual("u", GRAD, self.law.stress(d))
+        if out.wants_residual:
+            out.residual("u", GRAD, self.law.stress(d))
         if out.wants_jacobian:
             out.jacobian("u", GRAD, "u", GRAD, self.law.tangent(d))

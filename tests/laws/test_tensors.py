@@ -53,6 +53,13 @@ def test_combine_repeated_and_strided_tensors(some):
                                **CLOSE)
 
 
+def test_combine_with_one_tensor_for_all_points(dim, some):
+    b, A, one = some(), some(dim, dim), np.eye(dim)
+    np.testing.assert_allclose(tensors.combine(1.0, A, 1.0, one), A + one, **CLOSE)
+    np.testing.assert_allclose(tensors.combine(1.0, A, b, one), A + b[..., None, None] * one,
+                               **CLOSE)
+
+
 def test_outer(dim, some):
     A, B = some(dim), some(dim, dim)
     np.testing.assert_allclose(tensors.outer(A, B), np.einsum("...i,...kl->...ikl", A, B), **CLOSE)
