@@ -16,8 +16,8 @@ import typer
 from rich.console import Console
 from typer.core import TyperGroup
 
-import porolub
 from porolub.errors import PorolubError, SceneError
+from porolub.versions import versions
 
 PATIENCE = 10.0  # s that a rank in error waits for the others to get there too
 
@@ -158,26 +158,6 @@ def info() -> None:
     if rank_and_size()[0] == 0:
         for name, version in versions().items():
             print(f"{name:<10} {version}")
-
-
-def versions() -> dict[str, str]:
-    """Return the versions of Python, porolub and the libraries; ``missing`` if not importable."""
-
-    def petsc() -> str:
-        from petsc4py import PETSc
-
-        return ".".join(str(part) for part in PETSc.Sys.getVersion())
-
-    def module(name: str) -> str:
-        return str(__import__(name).__version__)
-
-    found = {"python": sys.version.split()[0], "porolub": porolub.__version__}
-    for name in ("numpy", "petsc", "petsc4py", "mpi4py", "gmsh", "h5py", "meshio"):
-        try:
-            found[name] = petsc() if name == "petsc" else module(name)
-        except ImportError:
-            found[name] = "missing"
-    return found
 
 
 def main() -> None:

@@ -24,6 +24,7 @@ from porolub.solve.gather import gather_fields, gather_state, gather_surface
 from porolub.solve.options import set_options
 from porolub.solve.report import Report, StepRecord
 from porolub.solve.steady import Outcome, SteadySolver
+from porolub.versions import versions
 
 log = logging.getLogger(__name__)
 FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach", "j": "volume_change"}
@@ -91,7 +92,7 @@ def make_report(scene: Any, outcome: Outcome) -> Report | None:
         "linear_iterations": outcome.linear_iterations,
         "time_steps": 0, "rejected_steps": outcome.rejected_steps,
         "wall_time": {**spent, "total": outcome.clock.elapsed()},
-        "peak_memory": memory, "versions": _versions(),
+        "peak_memory": memory, "versions": versions(),
     }
     step = {k: v for k, v in values.items() if isinstance(v, float)}
     return Report(summary, fields, surface, outcome.newton, [StepRecord(0.0, step)], state)
@@ -102,12 +103,6 @@ def _counts(model: Any) -> dict[str, int]:
     names["p"] = "pore_pressure" if model.scene.pores is not None else "film_pressure"
     counts = {names.get(k, k): v for k, v in model.dofs.counts().items()}
     return {**counts, "total": sum(counts.values())}
-
-
-def _versions() -> dict[str, str]:
-    from porolub.cli import versions
-
-    return versions()
 
 
 def _show(report: Report, scene: Any, out_dir: Path, quiet: bool) -> None:

@@ -20,8 +20,9 @@ ALLOWED = {
     "solve": ("scene", "laws", "mesh", "fem", "terms", "errors"),
     "io": (*BELOW, "errors", ""),
     "study": (*BELOW, "errors", "io", "run", ""),
-    "run": (*BELOW, "errors", "io", ""),
-    "cli": (*BELOW, "errors", "io", "study", "run", ""),
+    "versions": ("",),
+    "run": (*BELOW, "errors", "io", "versions", ""),
+    "cli": (*BELOW, "errors", "io", "study", "run", "versions", ""),
     "__main__": ("cli",),
     "": (),  # porolub/__init__.py
 }

@@ -1,6 +1,7 @@
 """Numbers that follow from a scene and tell a tribologist what to expect of it.
 
-For the paper's weighting of the strain energy (W = a W_iso + (1 - a) W_vol, a = Biot coefficient):
+For the paper's weighting of the strain energy (W = a W_iso + (1 - a) W_vol, a = Biot coefficient; a
+linear law is not weighted, G_eff = G and K_eff = K):
 
     G_eff = a G,  K_eff = (1 - a) K,  M = K_eff + 4/3 G_eff    (stiffness in confined compression)
     c = M kappa / (a^2 eta)                                     (consolidation coefficient)
@@ -40,7 +41,9 @@ def derived(scene: Scene) -> Derived:
     if scene.solid is None or scene.pores is None:
         return Derived(speed, length)
     a = scene.pores.biot
-    modulus = (1 - a) * scene.solid.bulk_modulus + 4 / 3 * a * scene.solid.shear_modulus
+    isochoric, volumetric = (1.0, 1.0) if scene.solid.law == "linear" else (a, 1 - a)
+    bulk, shear = volumetric * scene.solid.bulk_modulus, isochoric * scene.solid.shear_modulus
+    modulus = bulk + 4 / 3 * shear
     c = modulus * scene.pores.permeability / (a**2 * scene.pores.viscosity)
     if not (scene.pores.carry and speed and isinstance(shape, Arc)):
         return Derived(speed, length, modulus, c)

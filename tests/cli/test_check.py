@@ -35,7 +35,8 @@ def test_it_shows_title_effects_unknowns_and_conventions() -> None:
     assert row(text, "pore_pressure").endswith("9,331")
     assert row(text, "contact_pressure").endswith("601")
     assert row(text, "approach").endswith("1")
-    assert row(text, "total").endswith("83,255")
+    assert row(text, "volume_change").endswith("9,331")
+    assert row(text, "total").endswith("92,586")
     assert row(text, "surface_traction").startswith("surface_traction balanced")
     assert row(text, "entering").startswith("entering computed")
     assert "1.5 kN/m" in text

@@ -117,6 +117,14 @@ def test_a_block_without_plane_is_a_scene() -> None:
     assert (left.displacement.x, left.displacement.y, left.pressure) == (0.0, None, None)
 
 
+def test_a_linear_law_is_not_weighted() -> None:
+    """M = K + 4/3 G, whatever the Biot coefficient."""
+    linear = {**ROLLING, "solid": {**ROLLING["solid"], "law": "linear"}}
+    scene = scene_from_dict(linear)
+    expected = scene.solid.bulk_modulus + 4 / 3 * scene.solid.shear_modulus
+    assert derived(scene).confined_modulus == pytest.approx(expected)
+
+
 def test_derived_numbers_of_the_reference_scene() -> None:
     # by hand: M = 0.1 * 5 MPa + 4/3 * 0.9 * 0.5 MPa; c = M 1e-12 / 0.81; U = 0.1 m/s, d = 1 mm
     d = derived(scene_from_dict(ROLLING))
