@@ -168,4 +168,5 @@ def test_case_1_variants_differ_from_it_only_where_they_say() -> None:
     assert differences("case1_graded") == graded
     assert differences("case1_bonded") == bonded
     assert differences("case1_bonded_graded") == graded | bonded
-    assert differences("appendix_a") == slides
+    # the film at the inlet decides Appendix A's fluid load, so it ships graded
+    assert differences("appendix_a") == slides | graded

@@ -28,6 +28,7 @@ def test_structured_plane_meshes(degree: int, pressure_degree: int) -> None:
     count = estimate_unknowns(scene_from_dict(changed(ROLLING, mesh=mesh)))
     assert count["displacement"] == 2 * lattice((7, 3), degree)
     assert count["pore_pressure"] == lattice((7, 3), pressure_degree)
+    assert count["volume_change"] == lattice((7, 3), pressure_degree)
     assert count["contact_pressure"] == lattice((7,), degree)
     assert count["approach"] == 1
     assert count["total"] == sum(v for k, v in count.items() if k != "total")
@@ -44,9 +45,10 @@ def test_the_paper_s_mesh() -> None:
     assert estimate_unknowns(scene_from_dict(ROLLING)) == {
         "displacement": 2 * 601 * 61,
         "pore_pressure": 301 * 31,
+        "volume_change": 301 * 31,
         "contact_pressure": 601,
         "approach": 1,
-        "total": 73322 + 9331 + 601 + 1,
+        "total": 73322 + 2 * 9331 + 601 + 1,
     }
 
 
