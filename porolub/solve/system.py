@@ -110,7 +110,7 @@ class System:
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # J <= 0 is seen by _watch
     def _assemble(self, x: Array, r: Array | None, values: Array | None,
                   only: set[str] | None = None) -> None:
-        """One pass over the points: adds to the local residual, to the matrix values, or both."""
+        """One pass over the points: adds to the local residual or to the matrix values."""
         for name, parts in self._selected(only).items():
             blocks = self._blocks[name] if values is not None else {}
             if r is None and not blocks:
@@ -183,38 +183,21 @@ class System:
 
     def residual(self, X: PETSc.Vec, out: PETSc.Vec) -> None:
         """F(x), with x - value in constrained rows.  Sets ``lowest_jacobian`` (all ranks)."""
-        self._evaluate(X, out, None)
-
-    def jacobian(self, X: PETSc.Vec, mat: PETSc.Mat) -> None:
-        """dF/dx into a matrix made by ``create_matrix``."""
-        self._evaluate(X, None, mat)
-
-    def residual_and_jacobian(self, X: PETSc.Vec, out: PETSc.Vec, mat: PETSc.Mat) -> None:
-        """Both at the same state in one pass: fields and laws are evaluated once."""
-        self._evaluate(X, out, mat)
-
-    def _evaluate(self, X: PETSc.Vec, out: PETSc.Vec | None, mat: PETSc.Mat | None) -> None:
         stored = self.dofs.to_local(X)
-        x = self.physical(stored)
-        r = None if out is None else np.zeros(self.dofs.size_local)
-        if r is not None:
-            self.lowest_jacobian, self._lowest_here = np.inf, (np.inf, ())
-        if mat is None:
-            self._assemble(x, r, None)
-        else:
-            if self._pattern is None:
-                raise RuntimeError("create_matrix first")
-            with self._pattern.values(mat) as values:
-                self._assemble(x, r, values)
-        if r is not None and out is not None:
-            self._finish_residual(stored, r, out)
-
-    def _finish_residual(self, stored: Array, r: Array, out: PETSc.Vec) -> None:
-        r = self.stored(r)
+        self.lowest_jacobian, self._lowest_here = np.inf, (np.inf, ())
+        r = self.stored(self.local_residual(self.physical(stored)))
         c = self.constraints
         r[c.fixed] = np.where(self.dofs.owned[c.fixed], stored[c.fixed] - c.values, 0.0)
         self.dofs.add_to_global(r, out)
         self.lowest_jacobian = self.dofs.mesh.comm.allreduce(self.lowest_jacobian, op=MPI.MIN)
+
+    def jacobian(self, X: PETSc.Vec, mat: PETSc.Mat) -> None:
+        """dF/dx into a matrix made by ``create_matrix``."""
+        if self._pattern is None:
+            raise RuntimeError("create_matrix first")
+        x = self.physical(self.dofs.to_local(X))
+        with self._pattern.values(mat) as values:
+            self._assemble(x, None, values)
 
     # -- matrix -------------------------------------------------------------------------
     def create_matrix(self) -> PETSc.Mat:
