@@ -91,7 +91,8 @@ static void product(int nk, int m, int n, const double *A, int lda, const double
 static double *padded(size_t rows, int nn, const double *table)
 {
     double *out = calloc(rows * PAD(nn) + W, sizeof(double));
-    for (size_t k = 0; k < rows; k++) memcpy(out + k * PAD(nn), table + k * nn, nn * sizeof(double));
+    for (size_t k = 0; k < rows; k++)
+        memcpy(out + k * PAD(nn), table + k * nn, nn * sizeof(double));
     return out;
 }
 
@@ -114,7 +115,8 @@ void pl_evaluate(int ne, int nq, int dim, int variants, int nn, int nc, int grad
                  const double *x, double *out)
 {
     const int rows = grad ? dim : 1, n = nq * rows, ld = PAD(n);
-    double *turned = calloc((size_t)variants * nn * ld, sizeof(double)); /* (variant, node, point) */
+    /* the table as (variant, node, point) */
+    double *turned = calloc((size_t)variants * nn * ld, sizeof(double));
     double *h = malloc((nc * ld + nn * nc) * sizeof(double)), *xe = h + nc * ld;
     for (int v = 0; v < variants; v++)
         for (int k = 0; k < n; k++)
@@ -219,7 +221,8 @@ INLINE void flux_of_trial(int nq, int ti, int ci, int cj, int tj, int nj, int ld
                     if (cj == 1) *(vec *)t = y[0];
                     else if (cj == 2) {
                         *(vec *)t = __builtin_shuffle(y[0], y[1], ZIP_LOW);
-                        if (v + W / 2 < nj) *(vec *)(t + W) = __builtin_shuffle(y[0], y[1], ZIP_HIGH);
+                        if (v + W / 2 < nj)
+                            *(vec *)(t + W) = __builtin_shuffle(y[0], y[1], ZIP_HIGH);
                     } else
                         for (int k = 0; k < W && v + k < nj; k++)
                             for (int d = 0; d < cj; d++) t[k * cj + d] = y[d][k];
