@@ -72,7 +72,7 @@ def body_terms(scene: Any, law: Law | None, scales: Scales, operation: Operation
             terms.append(Streamline(a, capacity, mobility, operation, mesh.pressure_degree))
     for name, condition in scene.boundary.items():
         if condition.traction is not None:
-            terms.append(_traction(name, condition.traction, scales))
+            terms.append(_traction(name, condition.traction, scales, operation))
     return terms
 
 
@@ -106,8 +106,8 @@ def surface_terms(scene: Any, law: Law | None, scales: Scales, operation: Operat
     return terms
 
 
-def _traction(name: str, value: Any, scales: Scales) -> Traction:
+def _traction(name: str, value: Any, scales: Scales, operation: Operation) -> Traction:
     if isinstance(value, (int, float)):
-        return Traction(name, value / scales.pressure, (0.0,) * scales.dim)
+        return Traction(name, value / scales.pressure, (0.0,) * scales.dim, operation)
     parts = [getattr(value, k, None) or 0.0 for k in "xyz"[: scales.dim]]
-    return Traction(name, 0.0, tuple(p / scales.pressure for p in parts))
+    return Traction(name, 0.0, tuple(p / scales.pressure for p in parts), operation)

@@ -76,12 +76,30 @@ class Starter:
         newton.limits = limits
         return result
 
-    def _raise(self, x: PETSc.Vec, stage: str, apply: Callable[[float], None]) -> NewtonResult:
-        """Bring a share from 0 to 1 in adaptive steps."""
+    def loaded(self, x: PETSc.Vec) -> NewtonResult:
+        """For a scene without a plane: tractions and prescribed values raised together.
+
+        In place from x = 0. A prescribed displacement longer than an element would turn the
+        elements at the boundary inside out; raised step by step, the inside follows.
+        """
+        def boundaries(share: float) -> None:
+            self.model.operation.share = self.model.system.share = share
+
+        limits, self.newton.limits = self.newton.limits, dict.fromkeys(STEP_LIMIT, 1.0)
+        result = self._raise(x, "loading", boundaries, proportional=True)
+        boundaries(1.0)
+        self.newton.limits = limits
+        return result
+
+    def _raise(self, x: PETSc.Vec, stage: str, apply: Callable[[float], None],
+               proportional: bool = False) -> NewtonResult:
+        """Bring a share from 0 to 1 in adaptive steps; ``proportional``: x grows with it."""
         share, step = 0.0, 0.25
         while True:
             apply(min(1.0, share + step))
             trial = x.copy()
+            if proportional and share > 0.0:
+                trial.scale(min(1.0, share + step) / share)
             result = self.newton.solve(trial, stage, min(1.0, share + step), max_iterations=12)
             if result.converged:
                 share += step

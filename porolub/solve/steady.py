@@ -169,7 +169,12 @@ class SteadySolver:
             x.destroy()
             x = starter.zero(LIFTED)
             settle = False
-        if self.scene.pores is not None or self.scene.film is not None:
+        if model.surface is None:
+            log.info("%s: straight Newton failed (%s); loading in steps", name, result.why)
+            x.destroy()
+            x = starter.zero(0.0)
+            result = starter.loaded(x)
+        elif self.scene.pores is not None or self.scene.film is not None:
             log.info("%s: straight Newton failed (%s); starting up in time", name, result.why)
             options = StartUp(first_step=3e-3, steps=60) if settle else StartUp()
             result = starter.physical(x, settle, options)
@@ -190,6 +195,9 @@ class SteadySolver:
                    'feeds back on the load, so there may be no steady state: try solid.base = '
                    '"bonded", contact.friction_traction = false, a smaller contact.friction or '
                    'conventions.entering = "fresh"')
+        elif lubricated_name(self.scene) is None:
+            tip = ("try smaller tractions, displacements or pressures on the boundaries, and look "
+                   "at the last state in the output")
         else:
             tip = ("try a finer mesh or mesh.grading = \"contact\", a smaller load or speed, and "
                    "look at the last state in the output")

@@ -65,6 +65,7 @@ class System:
         self._blocks: dict[str, dict[tuple[str, str], Block]] = {}
         self.lowest_jacobian = 1.0
         self._lowest_here: tuple[float, Place] = (np.inf, ())
+        self.share = 1.0  # of the prescribed values that acts (continuation)
         self.previous: Array | None = None  # physical local vector at the start of a step
 
     # -- state --------------------------------------------------------------------------
@@ -93,7 +94,7 @@ class System:
         c, d = self.constraints, self.dofs
         own = d.owned[c.fixed]
         first = x.getOwnershipRange()[0]
-        x.array[d.global_numbers[c.fixed[own]] - first] = c.values[own]
+        x.array[d.global_numbers[c.fixed[own]] - first] = self.share * c.values[own]
 
     # -- assembly -----------------------------------------------------------------------
     @staticmethod
@@ -187,7 +188,8 @@ class System:
         self.lowest_jacobian, self._lowest_here = np.inf, (np.inf, ())
         r = self.stored(self.local_residual(self.physical(stored)))
         c = self.constraints
-        r[c.fixed] = np.where(self.dofs.owned[c.fixed], stored[c.fixed] - c.values, 0.0)
+        off = stored[c.fixed] - self.share * c.values
+        r[c.fixed] = np.where(self.dofs.owned[c.fixed], off, 0.0)
         self.dofs.add_to_global(r, out)
         self.lowest_jacobian = self.dofs.mesh.comm.allreduce(self.lowest_jacobian, op=MPI.MIN)
 

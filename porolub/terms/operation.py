@@ -21,6 +21,7 @@ class Operation:
     ``sliding`` (plane moves along ``direction``, speed in length per time).
     force: load to balance, or None when ``approach`` is prescribed.
     friction: share of the dry friction that acts (continuation).
+    share: share of tractions and prescribed values that acts (continuation).
     rate: 1 / time step of a start-up step, 0 in a steady solve.
     """
 
@@ -31,6 +32,7 @@ class Operation:
     force: float | None = None
     approach: float = 0.0
     friction: float = 1.0
+    share: float = 1.0
     rate: float = 0.0
 
     @property

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from porolub.fem.dofs import Field
 from porolub.fem.points import VALUE, Integrand, Points
+from porolub.terms.operation import Operation
 from porolub.terms.term import Part
 
 
@@ -18,6 +19,7 @@ class Traction:
     boundary: str
     normal: float
     vector: tuple[float, ...]
+    operation: Operation = field(default_factory=Operation)
     name: str = "traction"
 
     def fields(self) -> list[Field]:
@@ -31,4 +33,4 @@ class Traction:
 
     def apply(self, at: Points, out: Integrand) -> None:
         t = -self.normal * at.normal + np.asarray(self.vector)
-        out.residual("u", VALUE, -t)
+        out.residual("u", VALUE, -self.operation.share * t)

@@ -1,10 +1,11 @@
 """The start-up in time ends where steady Newton ends, and leaves nothing of itself behind."""
 
+import numpy as np
 import pytest
 
 from porolub.solve.model import Model
 from porolub.solve.startup import LIFTED, PRESSED_IN, Starter, StartUp
-from tests.solve.models import case1, model_of, newton_on
+from tests.solve.models import PORES, block, case1, model_of, newton_on, physical
 
 SAME = 1e-7  # scaled, largest difference of any unknown
 
@@ -19,7 +20,7 @@ def difference(model: Model, x, y) -> float:
     [
         ("case1", []),
         ("case1", ["load={approach='60 um'}"]),
-        ("case1", ["load.force=0.2 kN/m", "motion.speed=-1 rad/s"]),
+        ("case1", ["load.force=0.3 kN/m", "motion.speed=-1 rad/s"]),
         ("case1_bonded", []),
         ("appendix_a", []),
     ],
@@ -71,3 +72,34 @@ def test_a_start_up_that_cannot_step_says_when_and_why() -> None:
         assert result.why.startswith("the start-up stalled at t = ")
         assert "consolidation times: " in result.why
         assert starter.rejected > 0
+
+
+@pytest.mark.parametrize("wet", [False, True], ids=["dry", "wet"])
+def test_loading_in_steps_reaches_the_state_of_steady_newton(wet: bool) -> None:
+    top = {"traction": {"x": "0.02 MPa", "y": "-0.05 MPa"}}
+    top |= {"pressure": "0.1 MPa"} if wet else {}
+    sides = {"top": top, "left": {}, "right": {}, "bottom": {"displacement": {
+        "x": "0.01 mm", "y": "0.02 mm"}}}
+    scene = block(boundary=sides, **({"pores": PORES} if wet else {}))
+    with model_of(scene) as model, newton_on(model) as (watched, _):
+        starter = Starter(model, watched.newton)
+        x, y = starter.zero(0.0), starter.zero(0.0)
+        assert starter.straight(x, "straight").converged
+        assert starter.loaded(y).converged
+        assert {r.fraction for r in watched.records if r.stage == "loading"} >= {0.25, 1.0}
+        assert difference(model, x, y) < SAME
+        assert (model.operation.share, model.system.share) == (1.0, 1.0)
+
+
+def test_a_displacement_longer_than_an_element_is_reached_in_steps() -> None:
+    """Uniaxial strain: the layer of three elements is pressed by 1.2 of them."""
+    scene = block(boundary={"top": {"displacement": {"y": "-0.4 mm"}}})
+    with model_of(scene) as model, newton_on(model) as (watched, _):
+        starter = Starter(model, watched.newton)
+        assert not starter.straight(starter.zero(0.0), "straight").converged
+        x = starter.zero(0.0)
+        assert starter.loaded(x).converged
+        u = model.dofs.field("u", physical(model, x))
+        y = model.mesh.coordinates[model.dofs.nodes["u"], 1]
+    np.testing.assert_allclose(u[:, 0], 0.0, atol=1e-10)
+    np.testing.assert_allclose(u[:, 1], -0.4 * y, atol=1e-10)
