@@ -117,7 +117,9 @@ class Newton:
             self.clock.add("linear_solve", self._solve_start)
         self.linear_iterations += max(self.snes.getKSP().getIterationNumber(), 1)
         self._updates = self.dofs.field_norms(y, np.inf)
-        worst = max((size / self.limits[name] for name, size in self._updates.items()), default=0.0)
+        # the pressure of a film between rigid walls bends nothing, so no size is implausible
+        limits = self.limits if "u" in self._updates else {**self.limits, "p": np.inf}
+        worst = max((size / limits[name] for name, size in self._updates.items()), default=0.0)
         self._damping = 1.0 if worst <= 1.0 else 1.0 / worst
         if not np.isfinite(worst):
             self._damping = 1.0
@@ -201,6 +203,9 @@ class Newton:
         reason = self.snes.getConvergedReason()
         if reason < 0 and not self._why:
             self._explain(reason)
+        if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
+            # after a failed factorisation MUMPS refuses (INFOG(1) = -3) until it is set up anew
+            self.snes.getKSP().reset()
         return NewtonResult(reason > 0, self.iterations - before, self._why, self._place)
 
     def _explain(self, reason: int) -> None:
