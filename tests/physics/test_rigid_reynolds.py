@@ -29,8 +29,10 @@ Array = NDArray[np.float64]
 
 
 @cache
-def slider(elements: int, degree: int = 1, ratio: float = 2.0, speed: float = U) -> Solved:
+def slider(elements: int, degree: int = 1, ratio: float = 2.0, speed: float = U,
+           load: str = f"approach = {-H0} m") -> Solved:
     """A slanted rigid body, its high end to the left; the plane below slides with `speed`."""
+    key, _, value = load.partition(" = ")
     x = np.linspace(-LENGTH / 2, LENGTH / 2, elements + 1)
     with TemporaryDirectory() as directory:
         path = layer_file(Path(directory) / "slider.msh", x, np.array([0.0, 1e-3]),
@@ -40,13 +42,13 @@ def slider(elements: int, degree: int = 1, ratio: float = 2.0, speed: float = U)
             "mesh": {"pressure_degree": degree},
             "film": {"viscosity": f"{ETA} Pa*s"},
             "motion": {"kind": "sliding", "speed": f"{speed} m/s"},
-            "load": {"approach": f"{-H0} m"},
+            "load": {key: value},
         })
 
 
-def slider_load(ratio: float) -> float:
+def slider_load(ratio: float, lowest: float = H0) -> float:
     shape = np.log(ratio) / (ratio - 1.0) ** 2 - 2.0 / (ratio**2 - 1.0)
-    return 6.0 * ETA * U * LENGTH**2 / H0**2 * shape
+    return 6.0 * ETA * U * LENGTH**2 / lowest**2 * shape
 
 
 def slider_pressure(x: Array, ratio: float) -> Array:
@@ -100,6 +102,23 @@ def test_reversed_slider_sucks() -> None:
     """Reynolds' equation without cavitation is linear: p changes its sign with U."""
     forth, back = slider(16), slider(16, speed=-U)
     assert back.surface.p == pytest.approx(-forth.surface.p, abs=1e-9 * forth.surface.p.max())
+
+
+@pytest.mark.parametrize("lowest", [5e-5, 2e-5, 5e-6, 1e-6])
+def test_film_under_a_given_load(lowest: float) -> None:
+    """From zero to the film that carries the load, K = 1.4 to 21."""
+    force = slider_load(1.0 + H0 / lowest, lowest)  # the slope stays: K h0 - h0 = 20 um
+    s = slider(64, 2, load=f"force = {force} N/m")
+    assert -s.values["approach"] == pytest.approx(lowest, rel=1e-3)
+    assert s.values["load_balance_error"] < 1e-8
+
+
+@pytest.mark.parametrize("speed", [5.0, 500.0])
+def test_no_pressure_is_too_high_for_rigid_walls(speed: float) -> None:
+    """0.3 and 31 MPa: the equation is linear in p, so two iterations do."""
+    s = slider(32, 2, speed=speed)
+    assert s.values["load_fluid"] == pytest.approx(slider_load(2.0) * speed / U, rel=1e-5)
+    assert s.outcome.newton_iterations <= 3
 
 
 HALF = 10.0 * np.sqrt(2.0 * RADIUS * GAP)  # of the arc of the cylinder, m
