@@ -134,7 +134,7 @@ def test_ranks_stop_together_and_only_one_speaks(command: str) -> None:
     arguments = ["-m", "porolub", command, CASE1, "--set", "mesh.along=0"]
     result = subprocess.run(
         ["mpirun", "-n", "3", sys.executable, *arguments],
-        cwd=ROOT, capture_output=True, text=True, timeout=60, check=False,
+        cwd=ROOT, env=dict(os.environ), capture_output=True, text=True, timeout=60, check=False,
     )  # fmt: skip
     assert result.returncode == 2
     assert result.stderr.count("porolub: mesh.along = 0") == 1

@@ -20,7 +20,7 @@ def difference(model: Model, x, y) -> float:
     [
         ("case1", []),
         ("case1", ["load={approach='60 um'}"]),
-        ("case1", ["load.force=0.3 kN/m", "motion.speed=-1 rad/s"]),
+        ("case1", ["load.force=0.6 kN/m", "motion.speed=-1 rad/s"]),
         ("case1_bonded", []),
         ("appendix_a", []),
     ],
