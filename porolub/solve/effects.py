@@ -28,7 +28,7 @@ from porolub.terms.traction import Traction
 
 Law = LinearElastic | NeoHookean
 CONTACT_STIFFNESS = 1.0  # one modulus per thickness: weighs pressure against gap
-OPEN_SURFACE_CONDUCTANCE = 1e8  # in units of the layer's own, so p = 0 there to 1e-8
+OPEN_SURFACE_CONDUCTANCE = 1e6  # of the layer's own, at a gap of one thickness: p = 0 there
 
 
 def solid_law(scene: Any, pressure: float) -> Law | None:
@@ -100,7 +100,7 @@ def surface_terms(scene: Any, law: Law | None, scales: Scales, operation: Operat
         terms.append(Contact(plane, operation, name, CONTACT_STIFFNESS, friction, force,
                              mesh.degree))
         if film is None and pores is not None:
-            terms.append(Drainage(OPEN_SURFACE_CONDUCTANCE, plane, CONTACT_STIFFNESS, name))
+            terms.append(Drainage(OPEN_SURFACE_CONDUCTANCE, plane, name, force))
     if force:
         terms.append(LoadBalance(operation, name, surface.area, contact is not None, fluid))
     return terms

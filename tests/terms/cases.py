@@ -113,8 +113,8 @@ CASES = {
                     surface=True),
     "contact, friction": Case(contact(0.45), ("u", "v0"),
                               {("u", "l"), ("l", "l"), ("l", "u"), ("l", "v0")}, surface=True),
-    "open surface": Case(lambda s: Drainage(1e3, s.plane, 1.0, s.boundary), ("u", "p", "l", "v0"),
-                         {PP}, surface=True),
+    "open surface": Case(lambda s: Drainage(1e3, s.plane, s.boundary, True), ("u", "p", "v0"),
+                         SURFACE_PAIRS, surface=True),
     "load": Case(lambda s: LoadBalance(s.operation, s.boundary, 2.0, True, True), ("p", "l"),
                  {("v0", "p"), ("v0", "l")}),
 }
