@@ -84,6 +84,23 @@ def mirrored(forth: Solved, back: Solved) -> None:
                 forth.values[f"{flow}_{other}"], abs=1e-6 * size)
 
 
+@pytest.mark.parametrize("base", ["sliding", "bonded"])
+def test_rolling_without_a_film(base: str) -> None:
+    tables = rolling(base=base)
+    del tables["film"]
+    everything(solved(tables))
+
+
+def test_pressing_without_motion_drains() -> None:
+    """At rest no pressure is left in a steady state, and the skeleton carries all."""
+    tables = rolling(pores={"carry": False})
+    del tables["film"], tables["motion"]
+    s = solved(tables)
+    assert s.values["load_solid"] == pytest.approx(1500.0, rel=1e-9)
+    assert s.fields.pressure is not None
+    assert np.abs(s.fields.pressure).max() < 1e-6 * s.surface.p_c.max()
+
+
 @pytest.mark.parametrize("name", MIRRORED)
 def test_the_other_sense_of_rotation_is_the_mirror_image(name: str) -> None:
     mirrored(case(name), case(name, -1.0))

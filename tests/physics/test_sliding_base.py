@@ -41,6 +41,19 @@ def test_thin_film_leaves_the_share_of_the_theory(biot: float, tolerance: float,
 
 
 @pytest.mark.parametrize("traction", ["balanced", "paper"])
+@pytest.mark.parametrize("law", ["linear", "neo-hookean"])
+def test_without_a_film_the_share_is_that_of_the_theory(law: str, traction: str) -> None:
+    """No [film]: p = 0 beside the contact, sealed inside."""
+    tables = rolling(200, 8, traction=traction, solid={"law": law})
+    del tables["film"]
+    s = solved(tables)
+    assert s.values["load_ratio"] == pytest.approx(theory(0.9, traction), rel=0.03)
+    assert s.values["mass_balance_error"] < 1e-8
+    outside = (s.surface.p_c == 0.0) & (s.surface.h > 3e-6)
+    assert np.abs(s.surface.p[outside]).max() < 2e-3 * s.surface.p.max()
+
+
+@pytest.mark.parametrize("traction", ["balanced", "paper"])
 def test_film_adds_to_the_share_of_the_fluid(traction: str) -> None:
     over = [shared("linear", 0.9, traction, viscosity).values["load_ratio"] / theory(0.9, traction)
             for viscosity in (1.0, 0.1, 0.01)]
