@@ -45,7 +45,7 @@ def check(of: Solved, stretch: float) -> None:
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("stretch", [0.5, 0.8, 0.97, 1.2])
+@pytest.mark.parametrize("stretch", [0.3, 0.5, 0.8, 0.97, 1.2])
 def test_stretch_under_a_load(dimension: int, stretch: float) -> None:
     s = block(-stress(stretch), dimension)
     check(s, stretch)
@@ -65,8 +65,8 @@ def test_without_pores_the_moduli_count_in_full() -> None:
 
 
 def test_given_displacement_of_the_top() -> None:
-    top = {"displacement": {"y": f"{-0.03 * THICKNESS} m"}, "pressure": "0 Pa"}
-    check(block(0.0, boundary={"top": top}), 0.97)
+    top = {"displacement": {"y": f"{-0.3 * THICKNESS} m"}, "pressure": "0 Pa"}
+    check(block(0.0, boundary={"top": top}), 0.7)
 
 
 def test_stress_of_von_mises() -> None:
