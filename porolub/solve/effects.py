@@ -28,6 +28,7 @@ from porolub.terms.traction import Traction
 
 Law = LinearElastic | NeoHookean
 CONTACT_STIFFNESS = 1.0  # one modulus per thickness: weighs pressure against gap
+SEALED_FILM = 1e-7  # m; without pores a film closed by contact leaks like one as thin as this
 OPEN_SURFACE_CONDUCTANCE = 1e6  # of the layer's own, at a gap of one thickness: p = 0 there
 
 
@@ -91,9 +92,10 @@ def surface_terms(scene: Any, law: Law | None, scales: Scales, operation: Operat
     if film is not None:
         lubricant = Newtonian(film.viscosity / scales.viscosity,
                               film.shear_film_min / scales.length)
+        leak = SEALED_FILM / scales.length if pores is None and contact is not None else 0.0
         softness = (law.constrained_modulus, mobility_of(scene, scales)) if law else None
         terms.append(Film(lubricant, plane, operation, name, solid, force, mesh.pressure_degree,
-                          alone=pores is None, upwind=softness))
+                          alone=pores is None, upwind=softness, leak=leak))
         terms.append(Squeeze(plane, operation, name, solid, force))
     if contact is not None:
         friction = contact.friction if contact.friction_traction else 0.0

@@ -17,6 +17,7 @@ from petsc4py import PETSc
 from porolub.solve.place import Place, place_of_largest
 from porolub.solve.report import NewtonRecord
 from porolub.solve.system import System
+from porolub.terms.load import LoadBalance
 
 CONVERGED = PETSc.SNES.ConvergedReason.CONVERGED_SNORM_RELATIVE
 GOES_ON = PETSc.SNES.ConvergedReason.ITERATING
@@ -181,14 +182,15 @@ class Newton:
     def _record(self, iteration: int, snes: PETSc.SNES) -> NewtonRecord:
         residuals = self.dofs.field_norms(snes.getFunction()[0], 2)
         return NewtonRecord(self.stage, self.fraction, iteration, residuals, dict(self._updates),
-                            self._damping, self._load_fraction(residuals), self.clock.elapsed())
+                            self._damping, self._load_fraction(), self.clock.elapsed())
 
-    def _load_fraction(self, residuals: dict[str, float]) -> float:
-        force = next((t.operation.force for t in self.system.terms if t.name == "load"), None)
-        if force is None:
+    def _load_fraction(self) -> float:
+        """Load carried over the load asked for; the row of v0 is their difference."""
+        balance = next((t for t in self.system.terms if isinstance(t, LoadBalance)), None)
+        if balance is None or not balance.operation.force:
             return float("nan")
         signed = self.dofs.scalar_value("v0", self.snes.getFunction()[0])
-        return 1.0 + signed / force if force else float("nan")
+        return 1.0 + signed / balance.operation.force
 
     # -- use ----------------------------------------------------------------------------
     def solve(self, x: PETSc.Vec, stage: str = "steady", fraction: float = 1.0,

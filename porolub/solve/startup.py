@@ -21,6 +21,7 @@ from porolub.solve.newton import Newton, NewtonResult
 PRESSED_IN = 0.05  # first guess of the approach for a straight start, thicknesses
 LIFTED = -0.01  # where the plane starts in the physical start-up
 STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3, "j": np.inf}
+PATIENCE = 2  # strongly shortened steps: a good guess converges at once or not at all
 SMALLEST_SHARE = 2e-3  # of load or friction, below which a ramp is given up
 
 
@@ -121,6 +122,7 @@ class Starter:
         operation, system, dofs = self.model.operation, self.model.system, self.model.dofs
         target = operation.approach
         limits, self.newton.limits = self.newton.limits, dict(STEP_LIMIT)
+        patience, self.newton.patience = self.newton.patience, PATIENCE
         self.newton.abort_below = 0.05
         dt, t = options.first_step, 0.0
         result = NewtonResult(False, 0, "the start-up did not settle")
@@ -158,4 +160,5 @@ class Starter:
             dt *= 3.0 if step.iterations <= 3 else 2.0 if step.iterations <= 5 else 1.3
         operation.rate, operation.approach = 0.0, target
         self.newton.limits, self.newton.abort_below = limits, 0.0
+        self.newton.patience = patience
         return result

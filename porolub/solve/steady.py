@@ -10,12 +10,14 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
+from porolub.errors import SceneError
 from porolub.mesh import build_mesh
 from porolub.solve.derived import Derived
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
@@ -23,13 +25,14 @@ from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.options import refuse_unused, set_options
 from porolub.solve.place import place_in_words
 from porolub.solve.report import NewtonRecord
-from porolub.solve.startup import LIFTED, PRESSED_IN, Starter, StartUp
+from porolub.solve.startup import LIFTED, PATIENCE, PRESSED_IN, Starter, StartUp
 from porolub.solve.surface import typical_thickness
 from porolub.solve.transfer import Snapshot, restore, snapshot
 
 log = logging.getLogger(__name__)
 EDGES_APART = 0.5  # thicknesses between two places to refine toward
 FAILURES_ALLOWED = 2  # meshes without a steady state before the sequence is given up
+ALONE = {2: 3000, 3: 300}  # cells below which a mesh of the sequence is left to one rank
 COARSEST = 80  # elements along the surface on the first mesh, at most
 
 
@@ -40,6 +43,26 @@ class Level:
     along: int
     across: int
     graded: bool = False
+
+    @property
+    def name(self) -> str:
+        return f"{self.along} x {self.across}" + (" graded" if self.graded else "")
+
+    @property
+    def cells(self) -> int:
+        return self.along * self.across
+
+
+@dataclass(frozen=True)
+class Found:
+    """What a mesh of the sequence hands to the next; nothing yet by default."""
+
+    result: NewtonResult = field(default_factory=lambda: NewtonResult(False, 0))
+    data: Snapshot | None = None
+    edges: tuple[float, ...] = ()
+    newton_iterations: int = 0
+    linear_iterations: int = 0
+    rejected: int = 0
 
 
 @dataclass
@@ -99,34 +122,79 @@ class SteadySolver:
     def solve(self) -> Outcome:
         """Solve the scene. Raises SceneError for a scene the mesh or the model refuses."""
         scales = scales_of(self.scene, self._thickness())
-        data: Snapshot | None = None
-        edges: tuple[float, ...] = ()
+        before = Found()
         levels = levels_of(self.scene)
         failures = 0
         for number, level in enumerate(levels):
-            start = time.perf_counter()
-            model = self._model(level, scales, edges)
-            self.clock.add("setup", start)
-            name = f"{level.along} x {level.across}" + (" graded" if level.graded else "")
-            self.announce(name, (number + 1) / len(levels))
-            newton = Newton(model.system, self.clock, self.observe)
-            x, result = self._level(model, newton, data, name)
-            self.newton_iterations += newton.iterations
-            self.linear_iterations += newton.linear_iterations
-            refuse_unused(self._user_options)
-            newton.destroy()
-            failures += not result.converged
-            if number == len(levels) - 1 or failures == FAILURES_ALLOWED:
-                return self._outcome(result, model, x)
-            if result.converged:
-                data = snapshot(model, x)
-                edges = contact_edges(model, x)
+            last = number == len(levels) - 1
+            self.announce(level.name, (number + 1) / len(levels))
+            if not last and self.comm.size > 1 and level.cells < ALONE[scales.dim]:
+                model, x, found = None, None, self._on_one_rank(level, scales, before)
             else:
-                log.info("no steady state on %s (%s); trying the next mesh", name, result.why)
-            x.destroy()
-            model.destroy()
-            model.mesh.destroy()
+                model, x, found = self._run(level, scales, before, self.comm)
+            self.newton_iterations += found.newton_iterations
+            self.linear_iterations += found.linear_iterations
+            self.rejected += found.rejected
+            self._refuse_unused_options()
+            failures += not found.result.converged
+            if last or failures == FAILURES_ALLOWED:
+                if model is None:
+                    assert found.data is not None
+                    model = self._model(level, scales, before.edges, self.comm)
+                    x = restore(model, found.data)
+                return self._outcome(found.result, model, x)
+            if found.result.converged:
+                before = found
+            else:
+                log.info("no steady state on %s (%s); trying the next mesh", level.name,
+                         found.result.why)
+            if model is not None:
+                _free(model, x)
         raise AssertionError("unreachable: the last level returns")
+
+    def _run(self, level: Level, scales: Any, before: Found,
+             comm: Any) -> tuple[Model, PETSc.Vec, Found]:
+        """Solve on one mesh of the sequence. Collective on ``comm``."""
+        start = time.perf_counter()
+        model = self._model(level, scales, before.edges, comm)
+        self.clock.add("setup", start)
+        newton = Newton(model.system, self.clock, self.observe)
+        x, result, rejected = self._level(model, newton, before.data, level.name)
+        data = snapshot(model, x) if model.mesh.shape is not None else None
+        edges = contact_edges(model, x) if result.converged else ()
+        found = Found(result, data, edges, newton.iterations, newton.linear_iterations, rejected)
+        newton.destroy()
+        return model, x, found
+
+    def _on_one_rank(self, level: Level, scales: Any, before: Found) -> Found:
+        """A mesh too small to share: rank 0 solves it alone and tells the others.
+
+        Quicker than in parallel, and the path to the finer meshes does not depend on the ranks.
+        """
+        found: Found | Exception | None = None
+        if self.comm.rank == 0:
+            try:
+                model, x, found = self._run(level, scales, before, MPI.COMM_SELF)
+                _free(model, x)
+            except Exception as error:  # told to all ranks, which raise it together
+                found = error
+        found = self.comm.bcast(found)
+        if isinstance(found, Exception):
+            raise found
+        assert found is not None
+        return found
+
+    def _refuse_unused_options(self) -> None:
+        """Raise SceneError on all ranks for an option of the user that PETSc has not read."""
+        problem = None
+        if self.comm.rank == 0:  # the one rank that takes part on every mesh
+            try:
+                refuse_unused(self._user_options)
+            except SceneError as error:
+                problem = str(error)
+        problem = self.comm.bcast(problem)
+        if problem is not None:
+            raise SceneError(problem)
 
     def _thickness(self) -> float:
         """Thickness of the layer in m, measured on a user's mesh."""
@@ -138,26 +206,27 @@ class SteadySolver:
         mesh.destroy()
         return thickness
 
-    def _model(self, level: Level, scales: Any, edges: tuple[float, ...]) -> Model:
+    def _model(self, level: Level, scales: Any, edges: tuple[float, ...], comm: Any) -> Model:
         options: dict[str, Any] = {}
         if self.scene.geometry.shape != "file":
             options = {"along": level.along, "across": level.across}
             if level.graded and edges:
                 size = self.scene.mesh.edge_size
                 options |= {"edges": edges, "edge_size": (size or 10e-6) / scales.length}
-        mesh = build_mesh(self.scene, self.comm, length_scale=scales.length, **options)
+        mesh = build_mesh(self.scene, comm, length_scale=scales.length, **options)
         return build_model(self.scene, mesh, scales)
 
     def _level(self, model: Model, newton: Newton, data: Snapshot | None,
-               name: str) -> tuple[PETSc.Vec, NewtonResult]:
+               name: str) -> tuple[PETSc.Vec, NewtonResult, int]:
+        """State, result and rejected steps on one mesh, from the coarser solution or from zero."""
         starter = Starter(model, newton)
         if data is not None:
             x = restore(model, data)
-            newton.patience = 2  # a good guess converges at once or not at all
+            patience, newton.patience = newton.patience, PATIENCE
             result = starter.straight(x, name)
-            newton.patience = 1000
+            newton.patience = patience
             if result.converged:
-                return x, result
+                return x, result, starter.rejected
             x.destroy()
             x = restore(model, data)
             settle = True
@@ -165,7 +234,7 @@ class SteadySolver:
             x = starter.zero(PRESSED_IN)
             result = starter.straight(x, name)
             if result.converged:
-                return x, result
+                return x, result, starter.rejected
             x.destroy()
             x = starter.zero(LIFTED)
             settle = False
@@ -183,8 +252,7 @@ class SteadySolver:
             x.destroy()
             x = starter.zero(PRESSED_IN)
             result = starter.ramped(x)
-        self.rejected += starter.rejected
-        return x, result
+        return x, result, starter.rejected
 
     def _advice(self, why: str) -> str:
         """What failed and what to try, in this scene."""
@@ -210,6 +278,12 @@ class SteadySolver:
         message = "converged" if result.converged else self._advice(why)
         return Outcome(result.converged, message, model, x, self.records,
                        self.newton_iterations, self.linear_iterations, self.rejected, self.clock)
+
+
+def _free(model: Model, x: PETSc.Vec) -> None:
+    x.destroy()
+    model.destroy()
+    model.mesh.destroy()
 
 
 def contact_edges(model: Model, x: PETSc.Vec) -> tuple[float, ...]:
