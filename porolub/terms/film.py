@@ -2,7 +2,8 @@
 
 int [h^3/(12 eta) grad_s p . grad_s q - h/2 U . grad_s q] ds, h = max(0, gap).  Added to the fluid
 mass of the pores the exchange V drops out.  Where h = 0 the film conducts nothing and the
-surface is sealed by itself.
+surface is sealed by itself; without pores nothing would determine the film pressure there, so
+the conductance of a film of the thickness ``leak`` remains.
 """
 
 from __future__ import annotations
@@ -34,6 +35,7 @@ class Film:
     degree: int
     alone: bool  # no pores: the film brings its own pressure, on the surface only
     upwind: tuple[float, float] | None = None  # layer modulus and mobility; None: rigid surface
+    leak: float = 0.0  # thickness of the film whose conductance remains in closed contact
     name: str = "film"
 
     def fields(self) -> list[Field]:
@@ -51,7 +53,10 @@ class Film:
         h, _ = film_thickness(self.plane.gap(at))
         U = self.operation.entrainment(at.position, at.normal)
         g = self.surface_gradient(at)
-        return -self.law.conductance(h)[..., None] * g + h[..., None] / 2.0 * U
+        return -self.conductance(h)[..., None] * g + h[..., None] / 2.0 * U
+
+    def conductance(self, h: Array) -> Array:
+        return self.law.conductance(h) + self.law.conductance(np.asarray(self.leak))
 
     @staticmethod
     def surface_gradient(at: Points) -> Array:
@@ -62,7 +67,7 @@ class Film:
         h, dh = film_thickness(self.plane.gap(at))
         U = self.operation.entrainment(at.position, at.normal)
         g, n = self.surface_gradient(at), at.normal
-        k, dk = self.law.conductance(h), self.law.conductance_derivative(h)
+        k, dk = self.conductance(h), self.law.conductance_derivative(h)
         out.residual("p", GRAD, k[..., None] * g - h[..., None] / 2.0 * U)
         if out.wants_jacobian:
             tangential = np.eye(at.dim) - n[..., :, None] * n[..., None, :]
