@@ -236,7 +236,8 @@ class SteadySolver:
             if result.converged:
                 return x, result, starter.rejected
             x.destroy()
-            x = starter.zero(LIFTED)
+            # with no film between them nothing but contact can carry the plane
+            x = starter.zero(LIFTED if self.scene.film is not None else PRESSED_IN)
             settle = False
         if model.surface is None:
             log.info("%s: straight Newton failed (%s); loading in steps", name, result.why)
