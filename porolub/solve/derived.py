@@ -71,7 +71,7 @@ class Derived:
     def contact_pressure(self) -> Array:
         """(nnode,) contact pressure, exactly zero at open nodes (scaled)."""
         pressure = self.nodal("l")[:, 0]
-        return np.where(pressure > self.gap(), pressure, 0.0)
+        return np.where(pressure > np.maximum(self.gap(), 0.0), pressure, 0.0)
 
     def arc(self) -> Array:
         """(nnode,) signed arc position along the lubricated surface from its middle, scaled."""
@@ -111,9 +111,8 @@ class Derived:
             slope = np.einsum("...d,...d->...", at.grad("p"), along)
             stress = self.film.law.shear_stress(h, slope, speed)
             fluid = self.total((at.weights * stress).sum()) * self.model.scales.force
-        total = loads["load_total"]
-        return {"friction_coefficient": (solid + fluid) / total if total else None,
-                "friction_fluid": fluid / loads["load_fluid"] if loads["load_fluid"] else None}
+        return {"friction_coefficient": _ratio(solid + fluid, loads, "load_total"),
+                "friction_fluid": _ratio(fluid, loads, "load_fluid")}
 
     def contact(self) -> dict[str, float | None]:
         model, length = self.model, self.model.scales.length
@@ -229,6 +228,12 @@ class Derived:
             p = model.dofs.field("p", self.local) * model.scales.pressure
             out = {"pressure_max": self.extreme(p, True), "pressure_min": self.extreme(p, False)}
         return out
+
+
+def _ratio(force: float, loads: dict[str, Any], load: str) -> float | None:
+    """A force over a load; None where that load is no more than rounding."""
+    size = abs(loads["load_solid"]) + abs(loads["load_fluid"])
+    return force / loads[load] if abs(loads[load]) > 1e-10 * size else None
 
 
 def scalars(model: Model, x: PETSc.Vec) -> dict[str, Any]:
