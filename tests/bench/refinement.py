@@ -58,6 +58,15 @@ def solve(path: str, mesh: str, overrides: list[str]) -> tuple[dict[str, float],
     return values, outcome.newton_iterations, time.perf_counter() - start
 
 
+def halves(meshes: list[str]) -> bool:
+    """Whether each mesh halves the elements of the one before, so that orders mean something."""
+    counts = [[int(n) for n in mesh.rstrip("g").split("x")] for mesh in meshes]
+    graded = {mesh.endswith("g") for mesh in meshes}
+    return len(graded) == 1 and all(
+        b == 2 * a for one, two in zip(counts, counts[1:], strict=False)
+        for a, b in zip(one, two, strict=True))
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("scene")
@@ -80,11 +89,11 @@ def main() -> None:
         for mesh, row in zip(options.meshes[:-1], rows[:-1], strict=True):
             change = [f"{100 * (a / b - 1):+.2f} %" for a, b in zip(row, last, strict=True)]
             table.add_row(f"{mesh} - last", *change, "", "")
-    if len(rows) >= 3:
+    if len(rows) >= 3 and halves(options.meshes[-3:]):
         a, b, c = (np.array(r) for r in rows[-3:])
         orders = np.log2(np.abs((a - b) / np.where(b == c, np.nan, b - c)))
         table.add_row("order", *(f"{o:.1f}" for o in orders), "", "")
-    Console(width=130).print(table)
+    Console(width=150).print(table)
 
 
 if __name__ == "__main__":
