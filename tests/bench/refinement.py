@@ -13,6 +13,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import argparse
+import itertools
 import time
 
 import numpy as np
@@ -63,7 +64,7 @@ def halves(meshes: list[str]) -> bool:
     counts = [[int(n) for n in mesh.rstrip("g").split("x")] for mesh in meshes]
     graded = {mesh.endswith("g") for mesh in meshes}
     return len(graded) == 1 and all(
-        b == 2 * a for one, two in zip(counts, counts[1:], strict=False)
+        b == 2 * a for one, two in itertools.pairwise(counts)
         for a, b in zip(one, two, strict=True))
 
 
@@ -76,9 +77,9 @@ def main() -> None:
     table = Table(title=f"Refinement of {options.scene}")
     table.add_column("mesh")
     for name, (_, unit) in COLUMNS.items():
-        table.add_column(f"{name} [{unit}]" if unit else name, justify="right")
+        table.add_column(f"{name} {unit}".strip(), justify="right")
     table.add_column("Newton", justify="right")
-    table.add_column("time [s]", justify="right")
+    table.add_column("time s", justify="right")
     rows = []
     for mesh in options.meshes:
         values, newton, seconds = solve(options.scene, mesh, options.set)
