@@ -95,7 +95,8 @@ def levels_of(scene: Any) -> list[Level]:
         levels.insert(0, Level(along, across))
     while levels[0].along > COARSEST:
         first = levels[0]
-        levels.insert(0, Level(-(-first.along // 2), max(3, -(-first.across // 2))))
+        across = min(first.across, max(3, -(-first.across // 2)))
+        levels.insert(0, Level(-(-first.along // 2), across))
     return levels
 
 
