@@ -35,6 +35,17 @@ class Field:
     differential: bool = False
 
 
+def sum_at_nodes(mesh: Mesh, shares: Array) -> Array:
+    """Add up this rank's nodal shares (nnode, k) over the ranks, the same on all. Collective."""
+    k = shares.shape[1]
+    dofs = Dofs(mesh, [Field("share", k, mesh.degree)])
+    nodes = dofs.nodes["share"]
+    total = np.zeros_like(shares)
+    total[nodes] = dofs.sum_local(shares[nodes].ravel()).reshape(-1, k)
+    dofs.destroy()
+    return total
+
+
 class Dofs:
     """Dof numbers of a list of fields on a mesh."""
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from porolub.fem.dofs import Dofs, Field
+from porolub.fem.dofs import sum_at_nodes
 from porolub.fem.domains import Domain
 from porolub.laws.solid import von_mises_stress
 from porolub.solve.derived import Derived
@@ -37,12 +37,8 @@ def nodal_average(d: Derived, domain: Domain, values: Array) -> Array:
     both = np.zeros((len(mesh.coordinates), k + 1))
     np.add.at(both, mesh.cells.ravel(),
               np.concatenate([values, np.ones((*values.shape[:2], 1))], axis=2).reshape(-1, k + 1))
-    dofs = Dofs(mesh, [Field("w", k + 1, mesh.degree)])
-    total = dofs.sum_local(both[dofs.nodes["w"]].ravel()).reshape(-1, k + 1)
-    dofs.destroy()
-    out = np.zeros((len(mesh.coordinates), k))
-    out[dofs.nodes["w"]] = total[:, :k] / total[:, k:]
-    return out
+    total = sum_at_nodes(mesh, both)
+    return total[:, :k] / total[:, k:]
 
 
 def gather_fields(model: Model, x: PETSc.Vec) -> FieldData | None:
@@ -117,15 +113,11 @@ def _complete(d: Derived, nodes: NDArray[np.int64], values: Array) -> Array:
     """Let ranks that own a surface node but none of its facets know its value."""
     mesh = d.model.mesh
     k = values.shape[1]
-    dofs = Dofs(mesh, [Field("w", k + 1, mesh.degree)])
     known = np.zeros((len(values), k + 1))
     seen = np.unique(nodes)
     known[seen, :k], known[seen, k] = values[seen], 1.0
-    total = dofs.sum_local(known[dofs.nodes["w"]].ravel()).reshape(-1, k + 1)
-    dofs.destroy()
-    out = np.zeros_like(values)
-    out[dofs.nodes["w"]] = total[:, :k] / np.maximum(total[:, k:], 1.0)
-    return out
+    total = sum_at_nodes(mesh, known)
+    return total[:, :k] / np.maximum(total[:, k:], 1.0)
 
 
 def gather_surface(model: Model, x: PETSc.Vec) -> SurfaceData | None:

@@ -10,7 +10,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from porolub.errors import SceneError
-from porolub.fem.dofs import Dofs, Field
+from porolub.fem.dofs import Dofs, sum_at_nodes
 from porolub.fem.domains import Domain, NodalDomain
 from porolub.solve.conditions import constraints_of
 from porolub.solve.effects import Law, body_terms, solid_law, surface_terms
@@ -159,16 +159,11 @@ def _domains(terms: list[Term], mesh: Any, surface: LubricatedSurface | None,
 
 def _nodal_weights(mesh: Any, surface: Domain) -> Array:
     """(nnode,) integral over the surface of each node's basis function, summed over ranks."""
-    node = Dofs(mesh, [Field("w", 1, mesh.degree)])
-    local = np.zeros(node.size_local)
     values = surface.tables(mesh.degree).value[surface.variant]
     shares = np.einsum("eq,eqi->ei", surface.weights, values)
-    np.add.at(local, node.entity_dofs("w", surface).ravel(), shares.ravel())
-    total = node.sum_local(local)
-    weights = np.zeros(len(mesh.coordinates))
-    weights[node.nodes["w"]] = total
-    node.destroy()
-    return weights
+    weights = np.zeros((len(mesh.coordinates), 1))
+    np.add.at(weights[:, 0], mesh.cells[surface.cells].ravel(), shares.ravel())
+    return sum_at_nodes(mesh, weights)[:, 0]
 
 
 def _nodal_domain(name: str, mesh: Any, surface: LubricatedSurface) -> NodalDomain:

@@ -132,7 +132,7 @@ class SteadySolver:
             if not last and self.comm.size > 1 and level.cells < ALONE[scales.dim]:
                 model, x, found = None, None, self._on_one_rank(level, scales, before)
             else:
-                model, x, found = self._run(level, scales, before, self.comm)
+                model, x, found = self._run(level, scales, before, self.comm, hand_on=not last)
             self.newton_iterations += found.newton_iterations
             self.linear_iterations += found.linear_iterations
             self.rejected += found.rejected
@@ -153,16 +153,16 @@ class SteadySolver:
                 _free(model, x)
         raise AssertionError("unreachable: the last level returns")
 
-    def _run(self, level: Level, scales: Any, before: Found,
-             comm: Any) -> tuple[Model, PETSc.Vec, Found]:
-        """Solve on one mesh of the sequence. Collective on ``comm``."""
+    def _run(self, level: Level, scales: Any, before: Found, comm: Any,
+             hand_on: bool) -> tuple[Model, PETSc.Vec, Found]:
+        """Solve on one mesh of the sequence, for a next one if ``hand_on``. Collective."""
         start = time.perf_counter()
         model = self._model(level, scales, before.edges, comm)
         self.clock.add("setup", start)
         newton = Newton(model.system, self.clock, self.observe)
         x, result, rejected = self._level(model, newton, before.data, level.name)
-        data = snapshot(model, x) if model.mesh.shape is not None else None
-        edges = contact_edges(model, x) if result.converged else ()
+        data = snapshot(model, x) if hand_on else None
+        edges = contact_edges(model, x) if hand_on and result.converged else ()
         found = Found(result, data, edges, newton.iterations, newton.linear_iterations, rejected)
         newton.destroy()
         return model, x, found
@@ -175,7 +175,7 @@ class SteadySolver:
         found: Found | Exception | None = None
         if self.comm.rank == 0:
             try:
-                model, x, found = self._run(level, scales, before, MPI.COMM_SELF)
+                model, x, found = self._run(level, scales, before, MPI.COMM_SELF, hand_on=True)
                 _free(model, x)
             except Exception as error:  # told to all ranks, which raise it together
                 found = error
