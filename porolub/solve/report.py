@@ -56,8 +56,15 @@ class SurfaceData:
 
 @dataclass(frozen=True)
 class StepRecord:
-    """One accepted step of the history: time (s; 0 in a steady run), continuation fraction,
-    and every scalar of the summary that makes sense per step."""
+    """One accepted step of the history (SI): time (s; 0 in a steady run) and by name
+
+    - every scalar of the summary that makes sense per step,
+    - in a transient run also ``time_step`` (s, that led here), ``order`` (of the BDF),
+      ``newton_iterations`` and ``rejected_steps`` (of this step), ``speed`` (rad/s, or m/s of a
+      sliding plane), ``load_applied`` (N/m or N), ``fluid_content`` (kg/m or kg: fluid in pores
+      and film beyond the undeformed layer's) and ``fluid_gained`` (kg/m or kg: what entered
+      through all boundaries since the start, summed as the time scheme sums).
+    """
 
     time: float
     values: dict[str, float]
@@ -94,6 +101,35 @@ class StateData:
     fields: dict[str, tuple[NDArray[np.int64], Array]]
     units: dict[str, str]
     mesh_nodes: Array
+
+
+@dataclass(frozen=True)
+class Resume:
+    """All a transient run needs to go on from where it stands (rank 0; SI).
+
+    states: accepted states, newest first: as many as the time scheme looks back on, so that a
+    resumed run continues with the same order and the same steps; orders: BDF order each of them
+    was computed with; step: the next time step to try, s; frame: number of the next frame;
+    edges: arc positions (m) the mesh was refined toward; totals: running sums by name
+    (``time_steps``, ``newton_iterations``, ``wall_time``, balances, ...).
+    """
+
+    states: tuple[StateData, ...]
+    orders: tuple[int, ...]
+    step: float
+    frame: int = 0
+    edges: tuple[float, ...] = ()
+    totals: dict[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class FrameData:
+    """What is kept of one moment of a transient run for pictures and animations (rank 0; SI)."""
+
+    number: int
+    time: float
+    fields: FieldData
+    surface: SurfaceData | None
 
 
 @dataclass(frozen=True)
