@@ -31,11 +31,10 @@ class Points:
     (ne, nq, nc, dim).
     """
 
-    def __init__(self, domain: Domain, dofs: Dofs, local: Array, rows: slice, finite: bool,
-                 previous: Array | None = None) -> None:
+    def __init__(self, domain: Domain, dofs: Dofs, local: Array, rows: slice,
+                 finite: bool) -> None:
         self.domain, self.dofs, self.local, self.rows = domain, dofs, local, rows
         self.finite = finite
-        self._previous = previous
         self.dim = domain.dim
         self.position = domain.position[rows]
         self.normal = domain.normal[rows]
@@ -69,12 +68,6 @@ class Points:
             return Deformation(self.grad("u"), self.finite)
         return Deformation(np.zeros((*self.weights.shape, self.dim, self.dim)), False)
 
-    @cached_property
-    def before(self) -> Points:
-        """The same points in the previous state (the state at the start of a step)."""
-        assert self._previous is not None
-        return Points(self.domain, self.dofs, self._previous, self.rows, self.finite)
-
     def kept(self, name: str, depends_on: object, compute: Callable[[], Array]) -> Array:
         """An array of these points that depends on no unknown, computed anew only when the
         value ``depends_on`` has changed; whoever asks for the same name means the same array."""
@@ -93,24 +86,25 @@ class Integrand:
     """Sums of pointwise residual fluxes and tangents, keyed by test (and trial) slot.
 
     ``weight`` multiplies an array: a number, or one (ne, nq) per point.  Terms may add what is
-    not wanted; it is ignored.
+    not wanted; it is ignored.  ``factor`` multiplies all that is added while it is set.
     """
 
     def __init__(self, jacobian: bool, residual: bool = True) -> None:
         self.wants_jacobian, self.wants_residual = jacobian, residual
+        self.factor = 1.0
         self.f: dict[Slot, Array] = {}
         self.g: dict[tuple[Slot, Slot], Array] = {}
 
     def residual(self, field: str, op: bool, array: Array, weight: Array | float = 1.0) -> None:
         if self.wants_residual:
             key = (field, op)
-            self.f[key] = _add(self.f.get(key), array, weight)
+            self.f[key] = _add(self.f.get(key), array, self.factor * weight)
 
     def jacobian(self, test: str, op: bool, trial: str, trial_op: bool, array: Array,
                  weight: Array | float = 1.0) -> None:
         if self.wants_jacobian:
             key = ((test, op), (trial, trial_op))
-            self.g[key] = _add(self.g.get(key), array, weight)
+            self.g[key] = _add(self.g.get(key), array, self.factor * weight)
 
 
 def _add(total: Array | None, array: Array, weight: Array | float) -> Array:

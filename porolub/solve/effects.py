@@ -64,7 +64,7 @@ def body_terms(scene: Any, law: Law | None, scales: Scales, operation: Operation
         a, mobility = scene.pores.biot, mobility_of(scene, scales)
         spatial = scene.conventions.frame == "spatial"
         terms.append(Pores(a, mobility, spatial, mesh.pressure_degree))
-        terms.append(Storage(a, scene.pores.storage * scales.pressure, operation))
+        terms.append(Storage(a, scene.pores.storage * scales.pressure))
         if scene.pores.carry:
             ends = tuple(e for e in ("inlet", "outlet") if e in boundaries)
             fresh = scene.conventions.entering == "fresh"
@@ -96,7 +96,7 @@ def surface_terms(scene: Any, law: Law | None, scales: Scales, operation: Operat
         softness = (law.constrained_modulus, mobility_of(scene, scales)) if law else None
         terms.append(Film(lubricant, plane, operation, name, solid, force, mesh.pressure_degree,
                           alone=pores is None, upwind=softness, leak=leak))
-        terms.append(Squeeze(plane, operation, name, solid, force))
+        terms.append(Squeeze(plane, name, solid, force))
     if contact is not None:
         friction = contact.friction if contact.friction_traction else 0.0
         terms.append(Contact(plane, operation, name, CONTACT_STIFFNESS, friction, force,

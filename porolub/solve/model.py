@@ -16,7 +16,7 @@ from porolub.solve.conditions import constraints_of
 from porolub.solve.effects import Law, body_terms, solid_law, surface_terms
 from porolub.solve.scales import Scales
 from porolub.solve.surface import Circle, LubricatedSurface, surface_circle
-from porolub.solve.system import System, union_of_fields
+from porolub.solve.system import System, contents_of, parts_of, union_of_fields
 from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
 from porolub.terms.term import Term
@@ -147,7 +147,7 @@ def _domains(terms: list[Term], mesh: Any, surface: LubricatedSurface | None,
              degree: int) -> dict[str, Domain]:
     """A domain for every name the terms' integrals use."""
     domains: dict[str, Domain] = {}
-    for name in sorted({part.domain for term in terms for part in term.parts()}):
+    for name in sorted({*parts_of(terms), *contents_of(terms)}):
         if surface is not None and name == surface.domain.name:
             domains[name] = surface.domain
         elif surface is not None and name.startswith("nodes:"):

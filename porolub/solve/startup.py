@@ -50,7 +50,7 @@ class Starter:
 
     def straight(self, x: PETSc.Vec, stage: str, max_iterations: int = 25) -> NewtonResult:
         """Steady Newton from x."""
-        self.model.operation.rate = 0.0
+        self.model.system.steady()
         return self.newton.solve(x, stage, 1.0, max_iterations=max_iterations)
 
     def ramped(self, x: PETSc.Vec) -> NewtonResult:
@@ -127,8 +127,7 @@ class Starter:
         dt, t = options.first_step, 0.0
         result = NewtonResult(False, 0, "the start-up did not settle")
         for _ in range(options.steps):
-            operation.rate = 1.0 / dt
-            system.previous = system.physical(dofs.to_local(x))
+            system.backward_euler(system.physical(dofs.to_local(x)), dt)
             if operation.force is None and not settle:  # a prescribed approach comes down with time
                 operation.approach = LIFTED + (target - LIFTED) * min(1.0, (t + dt) / 0.01)
             trial = x.copy()
@@ -149,7 +148,8 @@ class Starter:
             trial.copy(x)
             trial.destroy()
             if change < options.settled and dt > options.settled_after:
-                operation.rate, operation.approach = 0.0, target
+                system.steady()
+                operation.approach = target
                 attempt = x.copy()
                 result = self.newton.solve(attempt, "steady", 1.0, max_iterations=20)
                 if result.converged:
@@ -158,7 +158,8 @@ class Starter:
                 if result.converged:
                     break
             dt *= 3.0 if step.iterations <= 3 else 2.0 if step.iterations <= 5 else 1.3
-        operation.rate, operation.approach = 0.0, target
+        system.steady()
+        operation.approach = target
         self.newton.limits, self.newton.abort_below = limits, 0.0
         self.newton.patience = patience
         return result

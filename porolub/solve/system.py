@@ -21,11 +21,12 @@ from porolub.fem.domains import Domain
 from porolub.fem.pattern import Pattern
 from porolub.fem.points import Integrand, Points
 from porolub.solve.place import Place
-from porolub.terms.term import Part, Term
+from porolub.terms.term import Part, Stores, Term
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
 BATCH = 9216  # points at a time: enough to forget NumPy's overhead, few enough for the cache
+Parts = dict[str, list[Part]]  # by domain
 
 
 def union_of_fields(terms: list[Term]) -> list[Field]:
@@ -44,20 +45,37 @@ def union_of_fields(terms: list[Term]) -> list[Field]:
     return [fields[n] for n in [*order, *rest]]
 
 
-class System:
-    """Residual and Jacobian of a list of terms.
+def parts_of(terms: list[Term]) -> Parts:
+    """The terms' integrals by domain."""
+    parts: Parts = {}
+    for t in terms:
+        for part in t.parts():
+            parts.setdefault(part.domain, []).append(part)
+    return parts
 
-    ``domains`` maps the domain names the terms use to ``Domain`` objects.
+
+def contents_of(terms: list[Term]) -> Parts:
+    """What the terms store, by domain."""
+    parts: Parts = {}
+    for t in terms:
+        if isinstance(t, Stores):
+            for part in t.contents():
+                parts.setdefault(part.domain, []).append(part)
+    return parts
+
+
+class System:
+    """Residual G(x) + d/dt C(x) and Jacobian of a list of terms; C is what the terms store.
+
+    ``domains`` maps the domain names the terms use to ``Domain`` objects.  In time, a scheme sets
+    ``rate`` and ``known`` such that d/dt C = rate C(x) + known; in a steady solve rate is 0.
     """
 
     def __init__(self, dofs: Dofs, terms: list[Term], domains: dict[str, Domain],
                  constraints: Constraints, finite: bool) -> None:
         self.dofs, self.terms, self.domains = dofs, terms, domains
         self.constraints, self.finite = constraints, finite
-        self.parts: dict[str, list[Part]] = {}
-        for t in terms:
-            for part in t.parts():
-                self.parts.setdefault(part.domain, []).append(part)
+        self.parts, self.contents = parts_of(terms), contents_of(terms)
         self._rotated_dofs = self._rotation_dofs()
         self._free = np.ones(dofs.size_local, bool)
         self._free[constraints.fixed] = False
@@ -66,7 +84,8 @@ class System:
         self.lowest_jacobian = 1.0
         self._lowest_here: tuple[float, Place] = (np.inf, ())
         self.share = 1.0  # of the prescribed values that acts (continuation)
-        self.previous: Array | None = None  # physical local vector at the start of a step
+        self.rate = 0.0
+        self.known: dict[str, Array] = {}  # by term: its share of d/dt C that x does not change
 
     # -- state --------------------------------------------------------------------------
     def _rotation_dofs(self) -> NDArray[np.int64]:
@@ -106,35 +125,38 @@ class System:
         step = self._batch(domain)
         for start in range(0, len(domain), step):
             rows = slice(start, min(start + step, len(domain)))
-            yield Points(domain, self.dofs, local, rows, self.finite, self.previous)
+            yield Points(domain, self.dofs, local, rows, self.finite)
 
     @np.errstate(divide="ignore", invalid="ignore", over="ignore")  # J <= 0 is seen by _watch
-    def _assemble(self, x: Array, r: Array | None, values: Array | None,
-                  only: set[str] | None = None) -> None:
-        """One pass over the points: adds to the local residual or to the matrix values."""
-        for name, parts in self._selected(only).items():
-            blocks = self._blocks[name] if values is not None else {}
-            if r is None and not blocks:
-                continue
+    def _add_residual(self, x: Array, r: Array, parts: Parts, contents: Parts) -> None:
+        """One pass over the points: adds parts + rate contents to the local residual."""
+        for name in sorted({*parts, *contents}):
             for at in self._points(name, x):
-                out = Integrand(jacobian=bool(blocks), residual=r is not None)
-                for part in parts:
-                    part.add(at, out)
-                if r is not None:
-                    self._watch(name, at)
-                    self._contract_residual(at, out, r)
-                if values is not None:
-                    self._contract_matrix(at, out, blocks, values)
+                out = Integrand(jacobian=False)
+                self._evaluate(at, out, parts.get(name, []), contents.get(name, []))
+                self._watch(name, at)
+                self._contract_residual(at, out, r)
 
-    def _selected(self, only: set[str] | None) -> dict[str, list[Part]]:
-        if only is None:
-            return self.parts
-        chosen: dict[str, list[Part]] = {}
-        for t in self.terms:
-            if t.name in only:
-                for part in t.parts():
-                    chosen.setdefault(part.domain, []).append(part)
-        return chosen
+    @np.errstate(divide="ignore", invalid="ignore", over="ignore")
+    def _add_matrix(self, x: Array, values: Array) -> None:
+        """One pass over the points: adds the derivatives to the matrix values."""
+        for name, blocks in self._blocks.items():
+            contents = self.contents.get(name, []) if self.rate else []
+            for at in self._points(name, x) if blocks else ():
+                out = Integrand(jacobian=True, residual=False)
+                self._evaluate(at, out, self.parts.get(name, []), contents)
+                self._contract_matrix(at, out, blocks, values)
+
+    def _evaluate(self, at: Points, out: Integrand, parts: list[Part],
+                  contents: list[Part]) -> None:
+        for part in parts:
+            part.add(at, out)
+        out.factor = self.rate
+        for part in contents:
+            part.add(at, out)
+
+    def _selected(self, only: set[str] | None) -> list[Term]:
+        return self.terms if only is None else [t for t in self.terms if t.name in only]
 
     def _watch(self, name: str, at: Points) -> None:
         if name == "cells" and at.has("u"):
@@ -179,8 +201,33 @@ class System:
         ``x`` is the physical local vector; ``only`` limits to terms of these names.
         """
         r = np.zeros(self.dofs.size_local)
-        self._assemble(x, r, None, only)
+        terms = self._selected(only)
+        self._add_residual(x, r, parts_of(terms), contents_of(terms) if self.rate else {})
+        if self.rate:
+            for t in terms:
+                r += self.known.get(t.name, 0.0)
         return r
+
+    def content(self, x: Array) -> dict[str, Array]:
+        """What each term that stores something holds: name -> Cartesian (size_local,) shares of
+        this rank's entities. ``x`` is the physical local vector."""
+        rate, self.rate = self.rate, 1.0
+        held = {}
+        for t in self.terms:
+            if isinstance(t, Stores):
+                held[t.name] = np.zeros(self.dofs.size_local)
+                self._add_residual(x, held[t.name], {}, contents_of([t]))
+        self.rate = rate
+        return held
+
+    def backward_euler(self, x: Array, step: float) -> None:
+        """Take the rate of contents as their difference to those of x, over a time step."""
+        self.rate = 1.0 / step
+        self.known = {name: -self.rate * c for name, c in self.content(x).items()}
+
+    def steady(self) -> None:
+        """Leave out the rate of contents."""
+        self.rate, self.known = 0.0, {}
 
     def residual(self, X: PETSc.Vec, out: PETSc.Vec) -> None:
         """F(x), with x - value in constrained rows.  Sets ``lowest_jacobian`` (all ranks)."""
@@ -199,23 +246,27 @@ class System:
             raise RuntimeError("create_matrix first")
         x = self.physical(self.dofs.to_local(X))
         with self._pattern.values(mat) as values:
-            self._assemble(x, None, values)
+            self._add_matrix(x, values)
 
     # -- matrix -------------------------------------------------------------------------
     def create_matrix(self) -> PETSc.Mat:
         """Matrix with the union pattern of all declared blocks; constrained rows are diagonal."""
         if self._pattern is None:
             spans = {(name, *block): self._span(name, *block)
-                     for name, parts in self.parts.items()
-                     for block in sorted({b for part in parts for b in part.blocks})}
+                     for name in sorted({*self.parts, *self.contents})
+                     for block in sorted(self._blocks_on(name))}
             self._pattern = Pattern(self.dofs, list(spans.values()), self.constraints.fixed)
-            self._blocks = {name: {} for name in self.parts}
+            self._blocks = {name: {} for name in sorted({*self.parts, *self.contents})}
             for (name, test, trial), (rows, cols, _) in spans.items():
                 turned = turned_entities(self.dofs, self.domains[name], self.constraints, test,
                                          trial)
                 block = Block(self._pattern.slots(rows, cols), turned)
                 self._blocks[name][test, trial] = block
         return self._pattern.create()
+
+    def _blocks_on(self, name: str) -> set[tuple[str, str]]:
+        return {b for kind in (self.parts, self.contents) for part in kind.get(name, [])
+                for b in part.blocks}
 
     def _span(self, name: str, test: str, trial: str) -> tuple[Ints, Ints, int]:
         domain, dofs = self.domains[name], self.dofs

@@ -22,7 +22,7 @@ class Operation:
     force: load to balance, or None when ``approach`` is prescribed.
     friction: share of the dry friction that acts (continuation).
     share: share of tractions and prescribed values that acts (continuation).
-    rate: 1 / time step of a start-up step, 0 in a steady solve.
+    time: s; what the prescribed tractions are asked for.
     """
 
     kind: str = "rest"
@@ -33,7 +33,7 @@ class Operation:
     approach: float = 0.0
     friction: float = 1.0
     share: float = 1.0
-    rate: float = 0.0
+    time: float = 0.0
 
     @property
     def motion(self) -> tuple[object, ...]:

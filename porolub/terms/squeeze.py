@@ -1,4 +1,4 @@
-"""Film thickness in time: int (h - h_0)/dt q ds (de Boer et al. 2020, Eq. 7), backward Euler."""
+"""Fluid between the surfaces: int h q ds; its rate is the squeeze (de Boer et al. 2020, Eq. 7)."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from dataclasses import dataclass
 from porolub.fem.dofs import Field
 from porolub.fem.points import VALUE, Integrand, Points
 from porolub.laws.lubricant import film_thickness
-from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
 from porolub.terms.term import Part
 
@@ -15,7 +14,6 @@ from porolub.terms.term import Part
 @dataclass(frozen=True)
 class Squeeze:
     plane: Plane
-    operation: Operation
     boundary: str
     displacement: bool
     approach: bool
@@ -28,15 +26,14 @@ class Squeeze:
         return ["p"]
 
     def parts(self) -> list[Part]:
-        blocks = self.plane.blocks("p", self.displacement, self.approach)
-        return [Part(f"facets:{self.boundary}", self.rate_of_thickness, blocks)]
+        return []
 
-    def rate_of_thickness(self, at: Points, out: Integrand) -> None:
-        rate = self.operation.rate
-        if rate == 0.0:
-            return
+    def contents(self) -> list[Part]:
+        blocks = self.plane.blocks("p", self.displacement, self.approach)
+        return [Part(f"facets:{self.boundary}", self.content, blocks)]
+
+    def content(self, at: Points, out: Integrand) -> None:
         h, dh = film_thickness(self.plane.gap(at))
-        before, _ = film_thickness(self.plane.gap(at.before))
-        out.residual("p", VALUE, rate * (h - before))
+        out.residual("p", VALUE, h)
         if out.wants_jacobian:
-            self.plane.chain(at, out, "p", VALUE, rate * dh)
+            self.plane.chain(at, out, "p", VALUE, dh)

@@ -1,7 +1,6 @@
-"""Fluid content of the pores in time: int (m - m_0)/dt q with m = a (J - 1) + S p.
+"""Fluid content of the pores: int m q with m = a (J - 1) + S p (de Boer et al. 2020, Eq. 5).
 
-Backward Euler on the conserved content itself, so the balance of a step closes exactly
-(de Boer et al. 2020, Eq. 5).  Nothing is computed in a steady solve (rate 0).
+The rows of fluid mass hold its rate, a difference of contents, so the balance closes exactly.
 """
 
 from __future__ import annotations
@@ -12,7 +11,6 @@ import numpy as np
 
 from porolub.fem.dofs import Field
 from porolub.fem.points import GRAD, VALUE, Integrand, Points
-from porolub.terms.operation import Operation
 from porolub.terms.term import Part
 
 
@@ -20,7 +18,6 @@ from porolub.terms.term import Part
 class Storage:
     biot: float
     storage: float
-    operation: Operation
     name: str = "storage"
 
     def fields(self) -> list[Field]:
@@ -30,17 +27,15 @@ class Storage:
         return ["u", "p"]
 
     def parts(self) -> list[Part]:
-        return [Part("cells", self.rate_of_content, [("p", "u"), ("p", "p")])]
+        return []
 
-    def content(self, at: Points) -> np.ndarray:
-        """Fluid volume added per reference volume, m."""
-        return self.biot * (at.deformation.J - 1.0) + self.storage * at.value("p")
+    def contents(self) -> list[Part]:
+        return [Part("cells", self.content, [("p", "u"), ("p", "p")])]
 
-    def rate_of_content(self, at: Points, out: Integrand) -> None:
-        rate = self.operation.rate
-        if rate == 0.0:
-            return
-        out.residual("p", VALUE, rate * (self.content(at) - self.content(at.before)))
+    def content(self, at: Points, out: Integrand) -> None:
+        """Fluid volume added per reference volume."""
+        a, S, d = self.biot, self.storage, at.deformation
+        out.residual("p", VALUE, a * (d.J - 1.0) + S * at.value("p"))
         if out.wants_jacobian:
-            out.jacobian("p", VALUE, "u", GRAD, rate * self.biot * at.deformation.cof)
-            out.jacobian("p", VALUE, "p", VALUE, np.full(at.weights.shape, rate * self.storage))
+            out.jacobian("p", VALUE, "u", GRAD, d.cof, weight=a)
+            out.jacobian("p", VALUE, "p", VALUE, np.full(at.weights.shape, S))

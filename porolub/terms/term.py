@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 from porolub.fem.dofs import Field
 from porolub.fem.points import Integrand, Points
@@ -41,3 +41,15 @@ class Term(Protocol):
 
     def parts(self) -> list[Part]:
         """Its integrals."""
+
+
+@runtime_checkable
+class Stores(Term, Protocol):
+    """An effect that keeps something over time: its rows hold d/dt of the contents.
+
+    What is stored is integrated, not its rate, so that any time scheme built on differences of
+    contents conserves it exactly.  In a steady solve contents cost nothing.
+    """
+
+    def contents(self) -> list[Part]:
+        """Integrals of what is stored, tested like the rows they belong to."""

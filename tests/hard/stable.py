@@ -80,7 +80,7 @@ def assert_stable(outcome: Outcome) -> None:
 
 def assert_steady(outcome: Outcome) -> None:
     model = outcome.model
-    assert model.operation.rate == 0.0
+    assert model.system.rate == 0.0
     before = outcome.x.copy()
     newton = Newton(model.system, Clock())
     newton.solve(before, max_iterations=1)

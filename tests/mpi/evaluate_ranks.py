@@ -66,9 +66,8 @@ def evaluate(tables: dict, comm: MPI.Intracomm) -> dict[str, Array]:
     of = model(tables, comm)
     dofs, system = of.dofs, of.system
     assert_numbered_once(dofs)
-    of.operation.rate = 5.0
     state = restrained(of, smooth(dofs))
-    system.previous = system.physical(restrained(of, smooth(dofs, 0.03, 0.05)))
+    system.backward_euler(system.physical(restrained(of, smooth(dofs, 0.03, 0.05))), 1 / 5.0)
     change = system.stored(smooth(dofs, 0.2, 0.3))
     change[system.constraints.fixed] = 0.0
     x, d, y = vector(dofs, state), vector(dofs, change), dofs.vector()

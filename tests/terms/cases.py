@@ -73,7 +73,7 @@ def contact(friction: float) -> Callable[[Setting], Term]:
 
 
 def squeeze(displacement: bool, approach: bool) -> Callable[[Setting], Term]:
-    return lambda s: Squeeze(s.plane, s.operation, s.boundary, displacement, approach)
+    return lambda s: Squeeze(s.plane, s.boundary, displacement, approach)
 
 
 UU, UP, PU, PP = ("u", "u"), ("u", "p"), ("p", "u"), ("p", "p")
@@ -85,7 +85,7 @@ CASES = {
     "pores, spatial": Case(lambda s: Pores(BIOT, MOBILITY, True, 1), ("u",), {UP, PP},
                            also=frozenset({UU, PU})),
     "pores, material": Case(lambda s: Pores(BIOT, MOBILITY, False, 1), ("u",), {UP, PP}),
-    "storage": Case(lambda s: Storage(BIOT, 0.2, s.operation), ("u", "p"), {PU, PP}),
+    "storage": Case(lambda s: Storage(BIOT, 0.2), ("u", "p"), {PU, PP}),
     "carry": Case(lambda s: Carry(BIOT, s.operation, s.ends, False), ("u", "p"), {PU}),
     "carry, fresh": Case(lambda s: Carry(BIOT, s.operation, s.ends, True), ("u", "p"), {PU}),
     "streamline": Case(lambda s: Streamline(BIOT, 0.8, 0.05, s.operation, 1), ("u", "p"),

@@ -40,6 +40,7 @@ class Exact:
     storage: float
     spatial: bool
     operation: Operation
+    rate: float = 0.0  # 1 / time step, from an undeformed state
     size: float = 0.2
     swing: float = 0.2  # of the pressure
 
@@ -99,7 +100,7 @@ class Exact:
         carried = self.divergence(lambda Z: self.deformation(Z)[1][..., None] * v, X)
         content = self.biot * (self.deformation(X)[1] - 1) + self.storage * self.p(X)
         return (self.biot * carried - self.divergence(self.flow, X)
-                + self.operation.rate * content)
+                + self.rate * content)
 
     def traction(self, X, N):
         """Total traction (P - a p B) N."""

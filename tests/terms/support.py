@@ -15,7 +15,7 @@ from porolub.fem.dofs import Dofs, Field
 from porolub.fem.domains import Domain, NodalDomain
 from porolub.fem.points import Points
 from porolub.mesh import Mesh
-from porolub.solve.system import System, union_of_fields
+from porolub.solve.system import System, contents_of, parts_of, union_of_fields
 from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
 from porolub.terms.term import Part, Term
@@ -30,7 +30,7 @@ STRAIN = np.array([[0.11, -0.07, 0.05], [0.04, -0.16, 0.08], [-0.06, 0.03, 0.09]
 def operation(kind: str = "rest", speed: float = 0.0, **others: object) -> Operation:
     """An operating point; the body turns about the centre of the curved meshes.
 
-    Here is the only place where tests name the knobs of continuation (such as `rate`).
+    Here is the only place where tests name the knobs of continuation.
     """
     settings: dict[str, object] = {"centre": (0.0, meshes.RADIUS, 0.0), "force": 0.8} | others
     return Operation(kind=kind, speed=speed, **settings)  # type: ignore[arg-type]
@@ -95,7 +95,7 @@ def system(mesh: Mesh, terms: Sequence[Term], fields: Sequence[str] = (), finite
     extra = Unknowns(tuple(known[name] for name in fields if name not in own))
     dofs = Dofs(mesh, union_of_fields([extra, *terms]))
     domains = {}
-    for name in {part.domain for term in terms for part in term.parts()}:
+    for name in {*parts_of(list(terms)), *contents_of(list(terms))}:
         kind, _, side = name.partition(":")
         domains[name] = nodal_domain(mesh, side) if kind == "nodes" else Domain(name, mesh, points)
     return System(dofs, list(terms), domains, constraints or unconstrained(mesh.dim), finite)

@@ -56,10 +56,13 @@ def test_jacobian_is_the_derivative_of_the_residual(name):
     system, dofs = of.system, of.dofs
     state = trial_state(of)
     for rate in (0.0, 5.0):  # steady, and a step of the start-up
-        of.operation.rate = rate
-        system.previous = system.physical(restrained(of, smooth(dofs, 0.03, 0.05)))
+        if rate:
+            before = system.physical(restrained(of, smooth(dofs, 0.03, 0.05)))
+            system.backward_euler(before, 1.0 / rate)
         filled = pairs(system, state)
-        declared = {b for term in system.terms for part in term.parts() for b in part.blocks}
+        parts = [part for kind in (system.parts, system.contents) for on in kind.values()
+                 for part in on]
+        declared = {b for part in parts for b in part.blocks}
         names = set(dofs.fields)
         assert {(n, n) for n in names - {"v0"}} <= filled <= declared | {(n, n) for n in names}
         assert {row for row, _ in filled} == names == {column for _, column in filled}

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from porolub.terms.term import Stores
 from tests.fem import meshes
 from tests.terms.cases import CASES, setting
 from tests.terms.support import smooth, system
@@ -20,16 +21,17 @@ RUNS = [(name, kind, finite) for name, case in CASES.items() for kind in KINDS
 def test_jacobian_is_the_derivative_of_the_residual(name, kind, finite):
     case, (along, across) = CASES[name], KINDS[kind]
     mesh, boundary = meshes.mesh(kind, along, across, 2), meshes.surface(kind)
-    at = setting(mesh, boundary, case.kind, rate=5.0)
+    at = setting(mesh, boundary, case.kind)
     term = case.build(at)
     of = system(mesh, [term], case.fields, finite, boundary=boundary)
     state = smooth(of.dofs)
-    of.previous = smooth(of.dofs, 0.03, 0.05)
+    of.backward_euler(smooth(of.dofs, 0.03, 0.05), 1 / 5.0)
     if case.surface:
         state = keep_off_kinks(of, at.plane, boundary, state)
     filled = pairs(of, state)
     assert filled == case.pairs | (case.also if finite else frozenset())
-    declared = {block for part in term.parts() for block in part.blocks}
+    stored = term.contents() if isinstance(term, Stores) else []
+    declared = {block for part in [*term.parts(), *stored] for block in part.blocks}
     assert filled <= declared
     residual = of.local_residual(state)
     assert np.isfinite(residual).all()
