@@ -1,6 +1,10 @@
-"""What a running solve shows: a line for each Newton iteration, on a terminal a status line too.
+"""What a running solve shows: lines as it goes, on a terminal a status at the foot too.
 
-The same lines go to the log (logger ``porolub.progress``), whatever is shown.
+A steady solve (also the one a transient run starts from) has a line for each Newton iteration. A
+transient run, from ``begin`` on, has one for each accepted and each rejected step; on a terminal
+the status shows the accepted ones and only the rejected stay. The lines of steps and notes go to
+the log (logger ``porolub.progress``) whatever is shown; Newton iterations of a transient run go
+there alone, at debug level.
 """
 
 import logging
@@ -8,22 +12,21 @@ import time
 from types import TracebackType
 from typing import Literal, Self
 
-from rich.console import Console
+from rich.console import Console, RenderableType
 from rich.live import Live
-from rich.progress_bar import ProgressBar
-from rich.table import Table
 from rich.text import Text
 
 from porolub.io.newton_lines import NewtonLines
-from porolub.io.words import seconds
-from porolub.solve.report import NewtonRecord
+from porolub.io.status import StepStatus, solve_status
+from porolub.io.step_lines import COMMENT, StepLines, rejected_line
+from porolub.solve.report import NewtonRecord, StepRecord
 
 Mode = Literal["auto", "live", "lines", "quiet"]
 _log = logging.getLogger("porolub.progress")
 
 
 class Progress:
-    """Shows stages, Newton iterations and notes; ``done`` (or leaving ``with``) ends it.
+    """Shows stages, Newton iterations, steps, notes; ``done`` (or leaving ``with``) ends it.
 
     mode: ``live`` for a terminal; ``lines`` for batch logs: plain text, never wrapped; ``quiet``
     shows nothing; ``auto`` is live on a terminal and lines elsewhere.
@@ -36,6 +39,8 @@ class Progress:
             mode = "live" if terminal else "lines"
         self.mode: Mode = mode
         self._lines = NewtonLines()
+        self._step_lines = StepLines()
+        self._steps: StepStatus | None = None  # of a transient run, once it has begun
         self._live: Live | None = None
         self._start = time.monotonic()
         self._stage = ""
@@ -45,12 +50,19 @@ class Progress:
         """A continuation stage begins that is to reach this fraction of the target."""
         self._stage, self._fraction = name, fraction
         self._lines.restart()
-        self._say(f"{name}: {100 * fraction:.3g} % of the target", "bold cyan")
+        line = f"{name}: {100 * fraction:.3g} % of the target"
+        if self._steps is not None:
+            _log.debug(line)
+            return
+        self._say(line, "bold cyan")
         self._status("")
 
     def newton(self, record: NewtonRecord) -> None:
         """A Newton iteration is done."""
-        if self.mode == "quiet" and not _log.isEnabledFor(logging.INFO):
+        if self._steps is not None:
+            self._newton_of_step(record)
+            return
+        if self._idle():
             return
         header = self._lines.header(record)
         if header is not None:
@@ -60,9 +72,38 @@ class Progress:
         self._stage, self._fraction = record.stage, record.fraction
         self._status(f"iteration {record.iteration}")
 
+    def begin(self, start: float, end: float) -> None:
+        """A transient run begins (or goes on) at ``start``, to end at ``end``, in s."""
+        self._steps = StepStatus(start, end, time.monotonic())
+        self._step_lines = StepLines()
+        self._lines.restart()
+        self.note(f"time steps from {start:.9g} to {end:.9g} s")
+        self._status()
+
+    def step(self, record: StepRecord) -> None:
+        """A time step was accepted; ``begin`` has been called."""
+        assert self._steps is not None
+        if self._idle():
+            return
+        self._steps.step(record, time.monotonic())
+        header = self._step_lines.header()
+        if header is not None:
+            self._say(header, keep=False)
+        self._say(self._step_lines.row(record, self._steps.pace.left()), keep=False)
+        self._status()
+
+    def rejected(self, time: float, step: float, why: str) -> None:
+        """A step of ``step`` s from ``time`` s was not accepted; ``begin`` has been called."""
+        assert self._steps is not None
+        self._steps.rejected += 1
+        self._steps.iteration = None
+        self._lines.restart()
+        self._say(rejected_line(time, step, why), "yellow")
+        self._status()
+
     def note(self, text: str) -> None:
         """Something the user should know, such as a stage that is taken back."""
-        self._say(text, "magenta")
+        self._say(text if self._steps is None else COMMENT + text, "magenta")
 
     def done(self) -> None:
         """Nothing more will come; take the status line away."""
@@ -81,23 +122,41 @@ class Progress:
     ) -> None:
         self.done()
 
-    def _say(self, line: str, style: str, log_only: str = "") -> None:
+    def _idle(self) -> bool:
+        """Whether nobody would see a line, as on all ranks but the first."""
+        return self.mode == "quiet" and not _log.isEnabledFor(logging.INFO)
+
+    def _newton_of_step(self, record: NewtonRecord) -> None:
+        """Iterations of a time step do not scroll by."""
+        if _log.isEnabledFor(logging.DEBUG):
+            header = self._lines.header(record)
+            if header is not None:
+                _log.debug(header)
+            _log.debug("%s%s", self._lines.row(record), self._lines.updates(record))
+        if self._steps is not None and self.mode == "live":
+            self._steps.iteration = record.iteration
+            self._status()
+
+    def _say(self, line: str, style: str = "", log_only: str = "", keep: bool = True) -> None:
+        """Log a line and show it; on a terminal only if it is one to ``keep``."""
         _log.info("%s%s", line, log_only)
-        if self.mode == "live":
-            self._console.print(Text(line, style=style), soft_wrap=True)
+        if self.mode == "live" and keep:
+            self._console.print(Text(line.removeprefix(COMMENT), style=style), soft_wrap=True)
         elif self.mode == "lines":
             # no styles: a batch log is read with other tools
             print(line, file=self._console.file, flush=True)
 
-    def _status(self, doing: str) -> None:
-        """Renew the status line; it is not renewed in between, which would take a thread."""
+    def _status(self, doing: str = "") -> None:
+        """Renew the status; it is not renewed in between, which would take a thread."""
         if self.mode != "live":
             return
         if self._live is None:
             self._live = Live(console=self._console, auto_refresh=False, transient=True)
             self._live.start()
-        row = Table.grid(padding=(0, 2))
-        bar = ProgressBar(total=1.0, completed=min(self._fraction, 1.0), width=24)
-        elapsed = seconds(time.monotonic() - self._start)
-        row.add_row(bar, f"{100 * self._fraction:.3g} %", self._stage, doing, elapsed)
-        self._live.update(row, refresh=True)
+        elapsed = time.monotonic() - self._start
+        status: RenderableType
+        if self._steps is not None:
+            status = self._steps.lines(elapsed)
+        else:
+            status = solve_status(self._fraction, self._stage, doing, elapsed)
+        self._live.update(status, refresh=True)

@@ -58,6 +58,20 @@ def seconds(value: float) -> str:
     return f"{minutes // 60} h {minutes % 60:02d} min"
 
 
+def clock(value: float) -> str:
+    """Write a duration in one word, for tables: ``0:03:05``."""
+    minutes, rest = divmod(round(value), 60)
+    return f"{minutes // 60}:{minutes % 60:02d}:{rest:02d}"
+
+
+def short_time(value: float) -> str:
+    """Write a time of the simulation with three digits: ``1.25 s``, ``4.10 ms``, ``12.0 us``."""
+    for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
+        if abs(value) >= 0.9995 * size:
+            return f"{value / size:#.3g}".rstrip(".") + f" {unit}"
+    return f"{value / 1e-9:.3g} ns" if value else "0 s"
+
+
 ONE = Unit("", 1.0)
 MILLIMETRE = Unit("mm", 1e-3)
 MICROMETRE = Unit("um", 1e-6)
