@@ -1,4 +1,4 @@
-"""The two ways a run can end badly, each with the exit code the command line returns for it."""
+"""The ways a run can end badly, each with the exit code the command line returns for it."""
 
 
 class PorolubError(Exception):
@@ -17,3 +17,9 @@ class SolveError(PorolubError):
     """A solve failed: says what failed, where, and what to try. Exit code 3."""
 
     exit_code = 3
+
+
+class Interrupted(PorolubError):
+    """The run was told to stop: says how to go on. Exit code 130."""
+
+    exit_code = 130

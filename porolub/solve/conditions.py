@@ -11,14 +11,24 @@ from porolub.errors import SceneError
 from porolub.fem.constraints import ConstraintBuilder, Constraints
 from porolub.fem.dofs import Dofs
 from porolub.fem.domains import Domain
+from porolub.scene.history import value_at
 
 Array = NDArray[np.float64]
 BASES = ("bone", "bottom")
 
 
-def constraints_of(scene: Any, mesh: Any, dofs: Dofs, scales: Any,
-                   lubricated: str | None) -> Constraints:
-    """Constraints in scaled units. Raises SceneError for a boundary the mesh does not have."""
+def prescribed_values(scene: Any, mesh: Any, dofs: Dofs, scales: Any, lubricated: str | None,
+                      t: float) -> Array:
+    """The values (k,) of the constraints at time t (s), in the order of ``Constraints.fixed``."""
+    return constraints_of(scene, mesh, dofs, scales, lubricated, t).values
+
+
+def constraints_of(scene: Any, mesh: Any, dofs: Dofs, scales: Any, lubricated: str | None,
+                   t: float = 0.0) -> Constraints:
+    """Constraints in scaled units, with the values of time t (s).
+
+    Raises SceneError for a boundary the mesh does not have.
+    """
     unknown = set(scene.boundary) - set(mesh.boundary_names)
     if unknown:
         raise SceneError(f"boundary.{min(unknown)}: the mesh has no such boundary; it has "
@@ -27,7 +37,7 @@ def constraints_of(scene: Any, mesh: Any, dofs: Dofs, scales: Any,
     for name in mesh.boundary_names:
         condition = scene.boundary.get(name)
         if condition is not None:
-            _given(build, condition, name, mesh, dofs, scales)
+            _given(build, condition, name, mesh, dofs, scales, t)
         elif "u" in dofs.fields and name != lubricated and name not in ("top", "lubricated"):
             if name in BASES and scene.solid.base == "bonded":
                 for axis in np.eye(mesh.dim):
@@ -40,17 +50,20 @@ def constraints_of(scene: Any, mesh: Any, dofs: Dofs, scales: Any,
 
 
 def _given(build: ConstraintBuilder, condition: Any, name: str, mesh: Any, dofs: Dofs,
-           scales: Any) -> None:
+           scales: Any, t: float) -> None:
     displacement = condition.displacement
     if displacement is not None and "u" in dofs.fields:
         if displacement.normal is not None:
-            _fix_normal(build, mesh, dofs, name, displacement.normal / scales.length)
+            normal = value_at(displacement.normal, t) / scales.length
+            _fix_normal(build, mesh, dofs, name, normal)
         for k, axis in enumerate("xyz"[: mesh.dim]):
             value = getattr(displacement, axis)
             if value is not None:
-                _fix(build, mesh, name, np.eye(mesh.dim)[k], value / scales.length)
+                value = value_at(value, t) / scales.length
+                _fix(build, mesh, name, np.eye(mesh.dim)[k], value)
     if condition.pressure is not None and "p" in dofs.fields:
-        build.scalar("p", mesh.boundary_nodes(name), condition.pressure / scales.pressure)
+        pressure = value_at(condition.pressure, t) / scales.pressure
+        build.scalar("p", mesh.boundary_nodes(name), pressure)
 
 
 def _fix(build: ConstraintBuilder, mesh: Any, name: str, axis: Array, value: float) -> None:

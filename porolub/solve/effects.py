@@ -9,6 +9,8 @@ from typing import Any
 
 from porolub.laws.lubricant import Newtonian
 from porolub.laws.solid import LinearElastic, NeoHookean
+from porolub.scene.conditions import Traction as Components
+from porolub.scene.history import value_at
 from porolub.solve.scales import Scales
 from porolub.solve.surface import LubricatedSurface
 from porolub.terms.carry import Carry
@@ -109,7 +111,11 @@ def surface_terms(scene: Any, law: Law | None, scales: Scales, operation: Operat
 
 
 def _traction(name: str, value: Any, scales: Scales, operation: Operation) -> Traction:
-    if isinstance(value, (int, float)):
-        return Traction(name, value / scales.pressure, (0.0,) * scales.dim, operation)
-    parts = [getattr(value, k, None) or 0.0 for k in "xyz"[: scales.dim]]
-    return Traction(name, 0.0, tuple(p / scales.pressure for p in parts), operation)
+    """``value``: a normal traction or its components, each a number or a history."""
+    def at(t: float) -> tuple[float, tuple[float, ...]]:
+        if not isinstance(value, Components):
+            return value_at(value, t) / scales.pressure, (0.0,) * scales.dim
+        parts = [value_at(getattr(value, k), t) / scales.pressure for k in "xyz"[: scales.dim]]
+        return 0.0, tuple(parts)
+
+    return Traction(name, *at(0.0), operation, at)

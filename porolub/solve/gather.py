@@ -178,12 +178,17 @@ def _rows_to_flux(table: Array, corners: NDArray[np.int64]) -> None:
 
 
 
+def units_of(model: Model) -> dict[str, tuple[float, str]]:
+    """SI size of the scaled unit of each unknown, and its name."""
+    s = model.scales
+    return {"u": (s.length, "m"), "p": (s.pressure, "Pa"), "l": (s.pressure, "Pa"),
+            "v0": (s.length, "m"), "j": (1.0, "1"), "w": (s.speed, "m/s")}
+
 
 def gather_state(model: Model, x: PETSc.Vec, time: float = 0.0) -> StateData | None:
     """All unknowns on rank 0 in natural order, None elsewhere. Collective."""
     d, mesh, s = Derived(model, x), model.mesh, model.scales
-    size = {"u": (s.length, "m"), "p": (s.pressure, "Pa"), "l": (s.pressure, "Pa"),
-            "v0": (s.length, "m"), "j": (1.0, "1")}
+    size = units_of(model)
     fields, units = {}, {}
     for name, f in model.dofs.fields.items():
         scale, units[name] = size[name]

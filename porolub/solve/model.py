@@ -13,6 +13,7 @@ from porolub.errors import SceneError
 from porolub.fem.dofs import Dofs, sum_at_nodes
 from porolub.fem.domains import Domain, NodalDomain
 from porolub.solve.conditions import constraints_of
+from porolub.solve.drive import operation_of
 from porolub.solve.effects import Law, body_terms, solid_law, surface_terms
 from porolub.solve.scales import Scales
 from porolub.solve.surface import Circle, LubricatedSurface, surface_circle
@@ -72,28 +73,6 @@ def lubricated_name(scene: Any) -> str | None:
     return {"block": "top"}.get(scene.geometry.shape, "lubricated")
 
 
-def _operation(scene: Any, scales: Scales, circle: Circle | None) -> Operation:
-    op = Operation(centre=(0.0,) * scales.dim)
-    if scene.motion is not None:
-        speed = scene.motion.at(0.0)
-        if scene.motion.kind == "rotation":
-            if circle is None:
-                raise SceneError('motion.kind = "rotation": the lubricated surface of this mesh is '
-                                 "no circular arc, so there is no centre to turn about.")
-            centre = [*circle.centre, 0.0][: scales.dim]
-            op = Operation("rotation", speed * scales.time, tuple(centre))
-        else:
-            axis = {"x": 0, "z": 2}[getattr(scene.motion, "direction", "x")]
-            direction = tuple(float(k == axis) for k in range(scales.dim))
-            op = Operation("sliding", speed / scales.speed, (0.0,) * scales.dim, direction)
-    if scene.load is not None:
-        if scene.load.force is not None:
-            op.force = scene.load.at(0.0) / scales.force
-        else:
-            op.approach = scene.load.at(0.0) / scales.length
-    return op
-
-
 def _plane(scene: Any, mesh: Any, boundary: str, operation: Operation) -> Plane:
     dim = mesh.dim
     default = [0.0] * dim
@@ -127,7 +106,7 @@ def build_model(scene: Any, mesh: Any, scales: Scales) -> Model:
     law = solid_law(scene, scales.pressure)
     name = lubricated_name(scene)
     circle = surface_circle(scene, mesh, name, scales.length)
-    operation = _operation(scene, scales, circle)
+    operation = operation_of(scene, scales, circle)
     surface = None
     if name is not None:
         surface = lubricated_surface(scene, mesh, name, circle, operation)

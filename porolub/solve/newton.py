@@ -10,6 +10,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 from petsc4py import PETSc
@@ -61,12 +62,17 @@ class NewtonResult:
 class Newton:
     """Solves F(x) = 0 for one System; reusable over continuation steps (one symbolic analysis).
 
-    ``observe`` is called with a NewtonRecord after each iteration.
+    ``observe`` is called with a NewtonRecord after each iteration; ``stop`` is asked before each
+    whether to give up, and says why (the same on all ranks of the
+    communicator it is given).  ``integrator``: a TS whose SNES is
+    to iterate like this; it asks for the residual and Jacobian itself.
     """
 
     def __init__(self, system: System, clock: Clock,
-                 observe: Callable[[NewtonRecord], None] = lambda record: None) -> None:
-        self.system, self.clock, self.observe = system, clock, observe
+                 observe: Callable[[NewtonRecord], None] = lambda record: None,
+                 stop: Callable[[Any], str] = lambda comm: "",
+                 integrator: PETSc.TS | None = None) -> None:
+        self.system, self.clock, self.observe, self.stop = system, clock, observe, stop
         self.dofs = system.dofs
         self.stage, self.fraction = "steady", 1.0
         self.iterations = self.linear_iterations = 0
@@ -74,6 +80,7 @@ class Newton:
         self.tolerance, self.max_iterations = 1e-9, 40
         self.abort_below = 0.0  # lowest J tolerated
         self.patience = 1000  # strongly shortened steps tolerated before giving up
+        self.given: Callable[[PETSc.Vec], bool] = lambda x: False  # puts in a state known already
         # of the iteration under way
         self._updates: dict[str, float] = {}
         self._damping, self._stalled, self._shortened = 1.0, 0, 0
@@ -83,30 +90,36 @@ class Newton:
         self._place: Place | None = None
         start = time.perf_counter()
         self.matrix = system.create_matrix()
-        self._residual = self.dofs.vector()
-        self.snes = self._snes()
+        self.residual = self.dofs.vector()
+        self._owned = integrator is None
+        if integrator is None:
+            self.snes = PETSc.SNES().create(comm=self.dofs.mesh.comm)
+            self.snes.setFunction(self.function, self.residual)
+            self.snes.setJacobian(self.jacobian, self.matrix)
+        else:
+            self.snes = integrator.getSNES()
+        self._configure()
         clock.add("setup", start)
 
-    def _snes(self) -> PETSc.SNES:
-        snes = PETSc.SNES().create(comm=self.dofs.mesh.comm)
+    def _configure(self) -> None:
+        snes = self.snes
         snes.setType("newtonls")
-        snes.setFunction(self._function, self._residual)
-        snes.setJacobian(self._jacobian, self.matrix)
         snes.setLineSearchPreCheck(self._limit_step)
         snes.setConvergenceTest(self._test)
         snes.setTolerances(max_it=1000)
         snes.setFromOptions()
         snes.getKSP().setErrorIfNotConverged(False)
-        return snes
 
     # -- callbacks ----------------------------------------------------------------------
-    def _function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+    def function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
+        """F(x) into f."""
         start = time.perf_counter()
         self.system.residual(x, f)
         self.clock.add("assembly", start)
         self._solve_start = None
 
-    def _jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
+    def jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
+        """dF/dx into P."""
         start = time.perf_counter()
         self.system.jacobian(x, P)
         self.clock.add("assembly", start)
@@ -140,10 +153,16 @@ class Newton:
         if iteration == 0:
             self._updates, self._damping = {}, 1.0
             self._stalled, self._previous_size, self._shortened = 0, np.inf, 0
+            self._why, self._place = "", None
+            if self.given(snes.getSolution()):
+                return CONVERGED
         record = self._record(iteration, snes)
         if iteration > 0:
             self.iterations += 1
             self.observe(record)
+        self._why = self.stop(self.dofs.mesh.comm)
+        if self._why:
+            return DIVERGED
         size = max(self._updates.values(), default=np.inf)
         if not np.isfinite(norms[2]) or self.system.lowest_jacobian <= self.abort_below:
             return self._not_defined()
@@ -202,13 +221,17 @@ class Newton:
         before = self.iterations
         self.system.apply_conditions(x)
         self.snes.solve(None, x)
+        return self.result(self.iterations - before)
+
+    def result(self, iterations: int) -> NewtonResult:
+        """How the last solve ended, which took ``iterations``."""
         reason = self.snes.getConvergedReason()
         if reason < 0 and not self._why:
             self._explain(reason)
         if reason == PETSc.SNES.ConvergedReason.DIVERGED_LINEAR_SOLVE:
             # after a failed factorisation MUMPS refuses (INFOG(1) = -3) until it is set up anew
             self.snes.getKSP().reset()
-        return NewtonResult(reason > 0, self.iterations - before, self._why, self._place)
+        return NewtonResult(reason > 0, iterations, self._why, self._place)
 
     def _explain(self, reason: int) -> None:
         """Why SNES itself gave up."""
@@ -223,5 +246,5 @@ class Newton:
             self._why = f"SNES stopped with reason {reason}"
 
     def destroy(self) -> None:
-        for o in (self.snes, self.matrix, self._residual):
+        for o in (self.matrix, self.residual, *([self.snes] if self._owned else [])):
             o.destroy()

@@ -11,6 +11,7 @@ import logging
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.options import refuse_unused, set_options
 from porolub.solve.place import place_in_words
 from porolub.solve.report import NewtonRecord
+from porolub.solve.scales import Scales
 from porolub.solve.startup import LIFTED, PATIENCE, PRESSED_IN, Starter, StartUp
 from porolub.solve.surface import typical_thickness
 from porolub.solve.transfer import Snapshot, restore, snapshot
@@ -82,6 +84,12 @@ class Outcome:
     linear_iterations: int
     rejected_steps: int
     clock: Clock
+    edges: tuple[float, ...] = ()  # where the mesh was refined, mesh units
+    status: str = ""  # converged | failed | interrupted; by default from ``converged``
+    time_steps: int = 0
+
+    def __post_init__(self) -> None:
+        self.status = self.status or ("converged" if self.converged else "failed")
 
 
 def levels_of(scene: Any) -> list[Level]:
@@ -106,11 +114,13 @@ class SteadySolver:
     def __init__(self, scene: Any, comm: Any,
                  observe: Callable[[NewtonRecord], None] = lambda record: None,
                  announce: Callable[[str, float], None] = lambda name, fraction: None,
-                 user_options: Sequence[str] = ()) -> None:
-        """``user_options``: names of PETSc options that some solver must read."""
+                 user_options: Sequence[str] = (),
+                 stop: Callable[[Any], str] = lambda comm: "") -> None:
+        """``user_options``: names of PETSc options that some solver must read; ``stop``: asked
+        in every Newton iteration whether to give up, see Newton."""
         self.scene, self.comm, self.announce = scene, comm, announce
         self.records: list[NewtonRecord] = []
-        self._observe, self._user_options = observe, list(user_options)
+        self._observe, self._user_options, self._stop = observe, list(user_options), stop
         if not PETSc.Options().hasName("pc_type"):
             set_options("")
         self.clock = Clock()
@@ -122,7 +132,7 @@ class SteadySolver:
 
     def solve(self) -> Outcome:
         """Solve the scene. Raises SceneError for a scene the mesh or the model refuses."""
-        scales = scales_of(self.scene, self._thickness())
+        scales = self.scales
         before = Found()
         levels = levels_of(self.scene)
         failures = 0
@@ -143,7 +153,7 @@ class SteadySolver:
                     assert found.data is not None
                     model = self._model(level, scales, before.edges, self.comm)
                     x = restore(model, found.data)
-                return self._outcome(found.result, model, x)
+                return self._outcome(found.result, model, x, before.edges)
             if found.result.converged:
                 before = found
             else:
@@ -159,7 +169,7 @@ class SteadySolver:
         start = time.perf_counter()
         model = self._model(level, scales, before.edges, comm)
         self.clock.add("setup", start)
-        newton = Newton(model.system, self.clock, self.observe)
+        newton = Newton(model.system, self.clock, self.observe, self._stop)
         x, result, rejected = self._level(model, newton, before.data, level.name)
         data = snapshot(model, x) if hand_on else None
         edges = contact_edges(model, x) if hand_on and result.converged else ()
@@ -197,8 +207,12 @@ class SteadySolver:
         if problem is not None:
             raise SceneError(problem)
 
+    @cached_property
+    def scales(self) -> Scales:
+        """Scaled units; the thickness of a layer on a user's mesh is measured. Collective."""
+        return scales_of(self.scene, self._thickness())
+
     def _thickness(self) -> float:
-        """Thickness of the layer in m, measured on a user's mesh."""
         stated = getattr(self.scene.geometry, "thickness", None)
         if stated is not None:
             return float(stated)
@@ -206,6 +220,13 @@ class SteadySolver:
         thickness = typical_thickness(mesh, lubricated_name(self.scene))
         mesh.destroy()
         return thickness
+
+    def model(self, edges: tuple[float, ...] = ()) -> Model:
+        """The scene on its own mesh, refined toward ``edges`` (arc positions, mesh units)."""
+        start = time.perf_counter()
+        model = self._model(levels_of(self.scene)[-1], self.scales, edges, self.comm)
+        self.clock.add("setup", start)
+        return model
 
     def _model(self, level: Level, scales: Any, edges: tuple[float, ...], comm: Any) -> Model:
         options: dict[str, Any] = {}
@@ -273,13 +294,15 @@ class SteadySolver:
                    "look at the last state in the output")
         return f"The steady solve failed: {why}; {tip}."
 
-    def _outcome(self, result: NewtonResult, model: Model, x: PETSc.Vec) -> Outcome:
+    def _outcome(self, result: NewtonResult, model: Model, x: PETSc.Vec,
+                 edges: tuple[float, ...]) -> Outcome:
         why = result.why
         if result.place is not None:
             why += f", near {place_in_words(result.place, model.scales.length)}"
         message = "converged" if result.converged else self._advice(why)
         return Outcome(result.converged, message, model, x, self.records,
-                       self.newton_iterations, self.linear_iterations, self.rejected, self.clock)
+                       self.newton_iterations, self.linear_iterations, self.rejected, self.clock,
+                       edges)
 
 
 def _free(model: Model, x: PETSc.Vec) -> None:

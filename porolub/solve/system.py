@@ -220,6 +220,14 @@ class System:
         self.rate = rate
         return held
 
+    def rates(self, held: dict[str, Array]) -> Array:
+        """d/dt of the contents ``held`` (see ``content``), all terms together (size_local,)."""
+        total = np.zeros(self.dofs.size_local)
+        if self.rate:
+            for name, content in held.items():
+                total += self.rate * content + self.known.get(name, 0.0)
+        return total
+
     def backward_euler(self, x: Array, step: float) -> None:
         """Take the rate of contents as their difference to those of x, over a time step."""
         self.rate = 1.0 / step

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -14,12 +15,16 @@ from porolub.terms.term import Part
 
 @dataclass(frozen=True)
 class Traction:
-    """``normal``: compression positive; ``vector``: components, added to it."""
+    """``normal``: compression positive; ``vector``: components, added to it.
+
+    ``varying`` gives both at a time in s, instead.
+    """
 
     boundary: str
     normal: float
     vector: tuple[float, ...]
     operation: Operation = field(default_factory=Operation)
+    varying: Callable[[float], tuple[float, tuple[float, ...]]] | None = None
     name: str = "traction"
 
     def fields(self) -> list[Field]:
@@ -32,5 +37,8 @@ class Traction:
         return [Part(f"facets:{self.boundary}", self.apply)]
 
     def apply(self, at: Points, out: Integrand) -> None:
-        t = -self.normal * at.normal + np.asarray(self.vector)
+        normal, vector = self.normal, self.vector
+        if self.varying is not None:
+            normal, vector = self.varying(self.operation.time)
+        t = -normal * at.normal + np.asarray(vector)
         out.residual("u", VALUE, -self.operation.share * t)

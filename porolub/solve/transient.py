@@ -1,0 +1,377 @@
+"""A scene over time: consistent start, steps to the end, and what is reported on the way."""
+
+from __future__ import annotations
+
+import logging
+import time as wall
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from porolub.errors import SceneError
+from porolub.solve.balance import FluidBalance
+from porolub.solve.derived import Derived, scalars_of
+from porolub.solve.drive import drive
+from porolub.solve.gather import gather_fields, gather_surface
+from porolub.solve.model import Model
+from porolub.solve.newton import Newton
+from porolub.solve.periodic import difference_of_periods
+from porolub.solve.place import place_in_words
+from porolub.solve.report import FrameData, NewtonRecord, Resume, StepRecord
+from porolub.solve.resume import Gathered, owned_values
+from porolub.solve.startup import STEP_LIMIT
+from porolub.solve.steady import Outcome, SteadySolver
+from porolub.solve.stepping import Rejection, Step, TimeStepper
+
+log = logging.getLogger(__name__)
+FIRST = 1e-3  # of the period or the end: the first step from a steady state
+SUDDEN = 1e-6  # of the layer's own time and the end: within it a load from rest is put on
+AT_A_KINK = 0.1  # of the step before: the first step after a kink
+LIFTED = {True: -10e-6, False: 0.0}  # m; where the plane starts from rest with a film, without
+
+
+def _ignore(*_: Any) -> None:
+    """What nobody watches."""
+
+
+@dataclass(frozen=True)
+class Watch:
+    """Who is told what, on all ranks but with data on rank 0 only (None elsewhere)."""
+
+    newton: Callable[[NewtonRecord], None] = _ignore
+    stage: Callable[[str, float], None] = _ignore
+    begin: Callable[[float, float], None] = _ignore  # start, end (s)
+    step: Callable[[StepRecord], None] = _ignore
+    rejected: Callable[[float, float, str], None] = _ignore  # time, size (s), why
+    frame: Callable[[FrameData], None] = _ignore
+    checkpoint: Callable[[Callable[[], Resume | None]], None] = _ignore  # gathers when called
+
+
+@dataclass
+class Totals:
+    """Running sums; scaled where they are volumes."""
+
+    time_steps: int = 0
+    rejected_steps: int = 0
+    newton_iterations: int = 0
+    through: float = 0.0  # volume that has passed the boundaries or the surface
+    content_start: float = 0.0
+    content_swing: float = 0.0
+    load_error: float = 0.0
+    periods: int = 0
+
+    def mass_error(self, content: float, gained: float) -> float:
+        """What has appeared from nowhere since the start over what has moved."""
+        size = max(self.through, self.content_swing)
+        return abs(content - self.content_start - gained) / size if size > 0 else 0.0
+
+
+class TransientSolver:
+    """Runs one scene with [time]; ``records`` holds a row per accepted step."""
+
+    def __init__(self, scene: Any, comm: Any, watch: Watch = Watch(),
+                 user_options: Sequence[str] = (),
+                 stop: Callable[[Any], str] = lambda comm: "",
+                 give_up: Callable[[Any], str] | None = None) -> None:
+        """``stop``: asked in every Newton iteration; a reason ends the run in good order.
+
+        ``give_up``: the same for the steady start, which has nothing to keep (may raise).
+        """
+        self.scene, self.comm, self.watch, self.stop = scene, comm, watch, stop
+        self.records: list[StepRecord] = []
+        self.totals = Totals()
+        self.steady = SteadySolver(scene, comm, watch.newton, watch.stage, user_options,
+                                   give_up or stop)
+        self.clock = self.steady.clock
+        self._edges: tuple[float, ...] = ()
+        self._frame = 0
+        self._next = 0.0  # scaled: the step to try next
+
+    # -- the run ------------------------------------------------------------------------------
+    def solve(self, resume: Resume | None = None, records: Sequence[StepRecord] = (),
+              resumed: bool = False) -> Outcome:
+        """From the start, or from a checkpoint (``resumed`` on all ranks, its data on rank 0).
+
+        Raises SceneError for a scene the mesh or the model refuses.
+        """
+        self.records = list(records)
+        if resumed:
+            self._resume(resume)
+        else:
+            failed = self._start()
+            if failed is not None:
+                return failed
+        return self._march()
+
+    def _march(self) -> Outcome:
+        time = self.scene.time
+        end = time.end / self.unit
+        self.watch.begin(self.now * self.unit, time.end)
+        for stop, kink in self._stops(end):
+            if stop <= self.now * (1 + 1e-12):
+                continue
+            failed = self._march_to(stop)
+            if failed is not None:
+                return failed
+            if kink:
+                self.stepper.restart(self.now)
+                self._next *= AT_A_KINK
+            if time.until == "periodic" and self._repeats():
+                return self._outcome(True, f"the last period repeats the one before; stopped "
+                                           f"after {self.totals.periods} periods")
+        if time.until == "periodic":
+            return self._outcome(True, "reached the end before a period repeated within "
+                                       f"{time.repeats_within:g}: raise time.end to go on")
+        return self._outcome(True, "reached the end")
+
+    def _march_to(self, stop: float) -> Outcome | None:
+        longest = (self.scene.time.step_max or np.inf) / self.unit
+        while stop - self.now > 1e-12 * stop:
+            size = min(self._landing(self._next, stop - self.now), longest)
+            step = self.stepper.step(size)
+            for rejection in step.rejected:
+                self._tell_rejected(rejection)
+            if step.failed:
+                return self._failed(step)
+            cut_short = size < self._next and not step.rejected
+            self._next = max(self.stepper.next_size, self._next if cut_short else 0.0)
+            self._accepted(step)
+            why = self.stop(self.comm)
+            if why:
+                return self._outcome(False, why, "interrupted")
+        return None
+
+    @staticmethod
+    def _landing(size: float, left: float) -> float:
+        """A step that ends at the stop, or leaves as much again for another one."""
+        if size >= left * (1 - 1e-9):
+            return left
+        return left / 2 if 2 * size > left else size
+
+    def _stops(self, end: float) -> list[tuple[float, bool]]:
+        """Times to land on exactly, and whether the slope of something jumps there (scaled)."""
+        kinks = {t / self.unit: True for t in self.scene.kinks(0.0, self.scene.time.end)}
+        periods: dict[float, bool] = {}
+        if self.scene.period is not None:
+            count = int(self.scene.time.end / self.scene.period * (1 + 1e-12))
+            periods = {n * self.scene.period / self.unit: False for n in range(1, count + 1)}
+        found = sorted({**periods, **kinks, end: False}.items())
+        return [(t, kink) for k, (t, kink) in enumerate(found)
+                if k + 1 == len(found) or found[k + 1][0] - t > 1e-9 * end]
+
+    @property
+    def now(self) -> float:
+        """The time reached, scaled."""
+        return self.stepper.lookback.entries[0].time
+
+    @property
+    def unit(self) -> float:
+        """One unit of scaled time, s."""
+        return float(self.model.scales.time)
+
+    # -- starts -------------------------------------------------------------------------------
+    def _start(self) -> Outcome | None:
+        """Build the model and find a consistent state; an Outcome if that fails."""
+        time = self.scene.time
+        if time.start == "steady":
+            found = self.steady.solve()
+            if not found.converged:
+                found.message = found.message.replace(
+                    "The steady solve", "The steady solve at t = 0, where the run starts,")
+                return found
+            self.model, self._edges = found.model, found.edges
+            self._create_stepper()
+            self.stepper.restart(0.0, found.x)
+            found.x.destroy()
+            self.totals.newton_iterations = found.newton_iterations
+            shortest = min(self.scene.period or np.inf, time.end)
+            self._next = (time.first_step or FIRST * shortest) / self.unit
+        else:
+            failed = self._from_rest()
+            if failed is not None:
+                return failed
+        self._note_start()
+        return None
+
+    def _from_rest(self) -> Outcome | None:
+        """The undeformed layer feels what acts at t = 0: one very short step of order 1."""
+        if self.scene.mesh.grading == "contact":
+            raise SceneError('mesh.grading = "contact" needs time.start = "steady": at rest there '
+                             "is no contact yet to refine toward.")
+        self.model = self.steady.model()
+        self._create_stepper()
+        system, dofs, time = self.model.system, self.model.dofs, self.scene.time
+        x = self.stepper.x
+        if "v0" in dofs.fields:
+            place = time.approach if time.approach is not None else LIFTED[bool(self.scene.film)]
+            dofs.set_scalar("v0", x, place / self.model.scales.length)
+        size = SUDDEN * min(1.0, time.end / self.unit)
+        drive(self.model, 0.0)
+        system.apply_conditions(x)
+        before = system.physical(dofs.to_local(x))
+        drive(self.model, size * self.unit)
+        system.backward_euler(before, size)
+        newton = Newton(system, self.clock, self.watch.newton, self.stop)
+        newton.limits = dict(STEP_LIMIT)
+        result = newton.solve(x, "from rest", max_iterations=60)
+        self.totals.newton_iterations += newton.iterations
+        newton.destroy()
+        if not result.converged:
+            return self._outcome(False, "The load could not be put on the layer at rest: "
+                                 f"{result.why}; try a smaller load at t = 0 that grows with "
+                                 'time, or time.start = "steady".')
+        self.stepper.restart(size)
+        self._next = (time.first_step or size * self.unit) / self.unit
+        return None
+
+    def _create_stepper(self) -> None:
+        time = self.scene.time
+        start = wall.perf_counter()
+        self.stepper = TimeStepper(self.model, time.order, time.tolerance, self.clock,
+                                   stop=self.stop)
+        self._gathered = Gathered(self.model)
+        self.clock.add("setup", start)
+
+    def _note_start(self) -> None:
+        """The state a run starts from is a row of the history too."""
+        d = Derived(self.model, self.stepper.x)
+        newest = self.stepper.lookback.entries[0]
+        held = newest.content
+        if "p" in self.model.dofs.fields:
+            rows = self.model.dofs.range["p"]
+            self.totals.content_start = d.total(sum(c[rows].sum() for c in held.values()))
+        self._record(d, Step(newest.time, 0.0, 1, self.totals.newton_iterations))
+        self._frames()
+
+    def _resume(self, resume: Resume | None) -> None:
+        """Take up where a checkpoint left off."""
+        known = None
+        if resume is not None:
+            states = [(s.time, resume.totals.get(f"gained {k}", 0.0))
+                      for k, s in enumerate(resume.states)]
+            known = (states, resume.step, resume.frame, resume.edges, resume.totals)
+        states, step, self._frame, edges, totals = self.comm.bcast(known, root=0)
+        length = self.steady.scales.length
+        self._edges = tuple(e / length for e in edges)
+        self.model = self.steady.model(self._edges)
+        self._create_stepper()
+        entries = []
+        for k, (t, gained) in enumerate(states):
+            state = resume.states[k] if resume is not None else None
+            entries.append((t / self.unit, owned_values(self.model, state), gained))
+        self.stepper.sizes = {n: totals[f"largest {n}"] for n in self.stepper.sizes}
+        self.stepper.replay(entries)
+        self._next = step / self.unit
+        for name, kind in Totals.__annotations__.items():
+            setattr(self.totals, name, (int if kind == "int" else float)(totals[name]))
+
+    # -- what is told on the way --------------------------------------------------------------
+    def _accepted(self, step: Step) -> None:
+        self.totals.time_steps += 1
+        self.totals.rejected_steps += len(step.rejected)
+        self.totals.newton_iterations += step.newton_iterations
+        start = wall.perf_counter()
+        self._record(Derived(self.model, self.stepper.x), step)
+        self._frames()
+        self.watch.checkpoint(self.resume)
+        self.clock.add("output", start)
+
+    def _record(self, d: Derived, step: Step) -> None:
+        model, scene = self.model, self.scene
+        values = {k: v for k, v in scalars_of(d).items() if isinstance(v, float)}
+        t = step.time * self.unit
+        values |= {"time_step": step.size * self.unit, "order": float(step.order),
+                   "newton_iterations": float(step.newton_iterations),
+                   "rejected_steps": float(len(step.rejected))}
+        if model.law is not None:
+            values["jacobian_min"] = model.system.lowest_jacobian
+        if scene.motion is not None:
+            values["speed"] = scene.motion.at(t)
+        if scene.load is not None and scene.load.force is not None:
+            values["load_applied"] = scene.load.at(t)
+        if "p" in model.dofs.fields:
+            values |= self._fluid(d.balance(), step)
+        if "load_balance_error" in values:
+            self.totals.load_error = max(self.totals.load_error, values["load_balance_error"])
+        record = StepRecord(t, values)
+        self.records.append(record)
+        self.watch.step(record)
+
+    def _fluid(self, found: FluidBalance, step: Step) -> dict[str, float]:
+        """Content and what has entered since the start, kg/m or kg."""
+        totals, gained = self.totals, self.stepper.lookback.entries[0].gained
+        swing = abs(found.content - totals.content_start)
+        totals.content_swing = max(totals.content_swing, swing)
+        totals.through += found.through * step.size
+        s = self.model.scales
+        mass = s.volume_flow * s.time * self.scene.fluid_density
+        return {"fluid_content": (found.content - totals.content_start) * mass,
+                "fluid_gained": gained * mass}
+
+    def _tell_rejected(self, rejection: Rejection) -> None:
+        t, size = rejection.time * self.unit, rejection.size * self.unit
+        log.debug("t = %.6g s: a step of %.3g s is taken back: %s", t, size, rejection.why)
+        self.watch.rejected(t, size, rejection.why)
+
+    def _frames(self) -> None:
+        """Keep a picture if one is due."""
+        count = self.scene.time.frames
+        if not count:
+            return
+        apart = (self.scene.period or self.scene.time.end) / count
+        now = self.now * self.unit
+        if now < self._frame * apart * (1 - 1e-9) and self._frame:
+            return
+        fields = gather_fields(self.model, self.stepper.x)
+        surface = gather_surface(self.model, self.stepper.x)
+        number, self._frame = self._frame, int(now / apart * (1 + 1e-9)) + 1
+        if fields is not None:
+            self.watch.frame(FrameData(number, now, fields, surface))
+
+    def _repeats(self) -> bool:
+        """Whether the period that has just ended repeats the one before."""
+        period = self.scene.period
+        assert period is not None  # a rule of the scene
+        turns = self.now * self.unit / period
+        if abs(turns - round(turns)) > 1e-9 * max(turns, 1.0):
+            return False
+        self.totals.periods = round(turns)
+        within = difference_of_periods(self.records, period)
+        log.info("period %d differs from the one before by %.2g", self.totals.periods, within)
+        return bool(self.comm.bcast(within <= self.scene.time.repeats_within, root=0))
+
+    def resume(self) -> Resume | None:
+        """All that is needed to go on from here, on rank 0. Collective."""
+        entries = self.stepper.lookback.entries
+        states = self._gathered.states(entries)
+        if states is None:
+            return None
+        totals = {k: float(v) for k, v in vars(self.totals).items()}
+        totals |= {f"gained {k}": e.gained for k, e in enumerate(entries)}
+        totals |= {f"largest {name}": v for name, v in self.stepper.sizes.items()}
+        return Resume(states, tuple(e.order for e in entries), self._next * self.unit,
+                      self._frame, tuple(e * self.model.scales.length for e in self._edges),
+                      totals)
+
+    # -- how it ended -------------------------------------------------------------------------
+    def _failed(self, step: Step) -> Outcome:
+        if self.stop(self.comm):
+            return self._outcome(False, step.failed, "interrupted")
+        t, size = step.time * self.unit, step.size * self.unit
+        near = ""
+        if step.place is not None:
+            near = f", near {place_in_words(step.place, self.model.scales.length)}"
+        return self._outcome(False, f"At t = {t:.6g} s even a step of {size:.2g} s fails: "
+                             f"{step.failed}{near}; try a smaller time.tolerance or a finer "
+                             "mesh, and look at the last state in the output.")
+
+    def _outcome(self, done: bool, message: str, status: str = "") -> Outcome:
+        """The state reached, with what has been counted."""
+        t = self.totals
+        newton = self.stepper.newton
+        return Outcome(done, message, self.model, self.stepper.x, [], t.newton_iterations,
+                       newton.linear_iterations + self.steady.linear_iterations,
+                       t.rejected_steps, self.clock, self._edges,
+                       status or ("converged" if done else "failed"), t.time_steps)
