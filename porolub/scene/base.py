@@ -1,8 +1,9 @@
 """The base of all scene models, and the two ways a value is refused."""
 
+from pathlib import Path
 from typing import Any
 
-from pydantic import BaseModel, BeforeValidator, ConfigDict
+from pydantic import BaseModel, BeforeValidator, ConfigDict, ValidationInfo
 from pydantic_core import PydanticCustomError
 
 
@@ -12,9 +13,12 @@ class Section(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
 
-def refused(reason: str) -> PydanticCustomError:
-    """Return the error for one value; the key and the value are put before ``reason``."""
-    return PydanticCustomError("refused", "{reason}", {"reason": reason})
+def refused(reason: str, key: str = "") -> PydanticCustomError:
+    """Return the error for one value; the key and the value are put before ``reason``.
+
+    ``key`` names the culprit among the keys of a table.
+    """
+    return PydanticCustomError("refused", "{reason}", {"reason": reason, "key": key})
 
 
 def broken(*sentences: str) -> PydanticCustomError:
@@ -30,3 +34,9 @@ def _whole(value: Any) -> Any:
 
 
 Whole = BeforeValidator(_whole)
+
+
+def beside_scene(path: Path, info: ValidationInfo) -> Path:
+    """Return the full path of a file that a scene names relative to itself."""
+    base = (info.context or {}).get("base_dir") or Path()
+    return (Path(base) / path.expanduser()).resolve()

@@ -9,7 +9,9 @@ def effects(scene: Scene) -> list[str]:
     transient = scene.time is not None
     asked = {
         "solid": scene.solid is not None,
+        "inertia": scene.solid is not None and scene.solid.inertia,
         "pores": pores is not None,
+        "compressibility": pores is not None and pores.compressibility is not None,
         "carry": pores is not None and pores.carry,
         "film": film is not None,
         "squeeze": film is not None and film.squeeze and transient,

@@ -12,7 +12,7 @@ from typing import Annotated, Any, ClassVar, Literal, Self
 
 from pydantic import BeforeValidator, Field, ValidationInfo, field_validator, model_validator
 
-from porolub.scene.base import Section, broken, refused
+from porolub.scene.base import Section, beside_scene, broken, refused
 from porolub.scene.units import PositiveLength, SectorAngle
 
 
@@ -140,8 +140,7 @@ class MeshFile(Shape):
     @field_validator("path")
     @classmethod
     def _exists(cls, path: Path, info: ValidationInfo) -> Path:
-        base = (info.context or {}).get("base_dir") or Path()
-        full = (Path(base) / path.expanduser()).resolve()
+        full = beside_scene(path, info)
         if not full.is_file():
             raise refused("there is no such mesh file")
         return full

@@ -8,6 +8,7 @@ from pydantic import StrictBool, model_validator
 from porolub.scene.base import Section, broken
 from porolub.scene.units import (
     NUMBER,
+    Compressibility,
     Density,
     Modulus,
     Permeability,
@@ -18,7 +19,10 @@ from porolub.scene.units import (
 )
 
 Biot = Annotated[float, Quantity(NUMBER, above=0, at_most=1)]
+Porosity = Annotated[float, Quantity(NUMBER, above=0, at_most=1)]
 PoissonRatio = Annotated[float, Quantity(NUMBER, above=-1, below=0.5)]
+
+ROUNDING = 1e-12
 
 
 class Solid(Section):
@@ -26,6 +30,7 @@ class Solid(Section):
 
     Given by shear and bulk modulus, or by Young's modulus and Poisson's ratio, which are
     converted: ``shear_modulus`` and ``bulk_modulus`` always hold, the other two are then None.
+    ``inertia`` adds density times acceleration to the momentum balance of a transient run.
     """
 
     law: Literal["linear", "neo-hookean"]
@@ -35,6 +40,7 @@ class Solid(Section):
     poisson_ratio: PoissonRatio | None = None
     base: Literal["sliding", "bonded"] = "sliding"
     density: Density | None = None
+    inertia: StrictBool = False
 
     @model_validator(mode="after")
     def _one_pair_of_moduli(self) -> Self:
@@ -63,6 +69,12 @@ class Pores(Section):
 
     ``carry`` switches on the transport of pore volume with the rotating body, v . grad J;
     ``fluid_density`` (kg/m^3) turns volume flows into the mass flows that are reported.
+
+    ``compressibility`` (1/Pa) lets the density follow the pressure, rho = rho_0 exp(chi p), in
+    storage and in flow; None leaves it constant in both but for ``storage``. It needs the
+    ``porosity`` of the undeformed layer, eps_0: the storage coefficient
+    S = eps_0 chi + (1 - a)(a - eps_0)/K holds the fluid's own part already, so
+    ``storage`` cannot be less than eps_0 chi.
     """
 
     biot: Biot
@@ -71,6 +83,25 @@ class Pores(Section):
     storage: Storage = 0.0
     carry: StrictBool = False
     fluid_density: Density = 1000.0
+    compressibility: Compressibility | None = None
+    porosity: Porosity | None = None
+
+    @model_validator(mode="after")
+    def _compressible_fluid_fills_pores(self) -> Self:
+        chi, porosity = self.compressibility, self.porosity
+        if chi is None:
+            return self
+        if porosity is None:
+            raise broken(
+                "pores.compressibility needs pores.porosity, a number greater than 0 and at most 1."
+            )
+        own = porosity * chi
+        if self.storage < own * (1 - ROUNDING):
+            raise broken(
+                f"pores.storage = {self.storage:g} 1/Pa must be at least pores.porosity * "
+                f"pores.compressibility = {own:g} 1/Pa: it holds the fluid's own compression."
+            )
+        return self
 
 
 class Film(Section):

@@ -1,32 +1,35 @@
-"""What is done to the layer: contact with the plane, motion, load, time."""
+"""What is done to the layer: contact with the plane, motion, load."""
 
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, StrictBool, field_validator, model_validator
 
-from porolub.scene.base import Section, Whole, broken, refused
-from porolub.scene.history import (
+from porolub.scene.base import Section, broken, refused
+from porolub.scene.histories import (
     AngularSpeedHistory,
     ForceHistory,
-    Harmonic,
     LengthHistory,
     SpeedHistory,
-    value_at,
 )
-from porolub.scene.units import NUMBER, PositiveTime, Quantity
+from porolub.scene.history import History, value_at
+from porolub.scene.units import NUMBER, PositiveSpeed, Quantity
 
 Friction = Annotated[float, Quantity(NUMBER, at_least=0)]
-Tolerance = Annotated[float, Quantity(NUMBER, above=0, below=1)]
 
 
 class Contact(Section):
     """Contact with the rigid plane; ``friction`` is the coefficient of dry friction.
 
     ``friction_traction`` says whether friction shears the skeleton; it is reported in any case.
+    A sliding velocity w that changes its sign would make the direction of friction jump. So in
+    transient runs with ``friction_traction`` the direction is w / sqrt(|w|^2 + w_0^2), with
+    w_0 = ``friction_speed`` in m/s: friction passes through zero with the speed, and is within
+    1 % of Coulomb's where |w| > 7 w_0. It is used nowhere else.
     """
 
     friction: Friction = 0.0
     friction_traction: StrictBool = False
+    friction_speed: PositiveSpeed = 1e-3
 
 
 class Rotation(Section):
@@ -66,7 +69,7 @@ class Load(Section):
 
     @field_validator("force")
     @classmethod
-    def _presses(cls, force: float | Harmonic[float] | None) -> float | Harmonic[float] | None:
+    def _presses(cls, force: float | History | None) -> float | History | None:
         if isinstance(force, float) and force <= 0:
             raise refused("the value must be greater than 0")
         return force
@@ -83,12 +86,3 @@ class Load(Section):
         history = self.force if self.force is not None else self.approach
         assert history is not None  # _one_of_two
         return value_at(history, t)
-
-
-class Time(Section):
-    """A transient run: times in s, relative ``tolerance`` of a step, ``order`` of the BDF."""
-
-    end: PositiveTime
-    tolerance: Tolerance = 1e-3
-    step_max: PositiveTime | None = None
-    order: Annotated[Literal[1, 2, 3], Whole] = 2

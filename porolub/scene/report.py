@@ -7,15 +7,18 @@ from rich.table import Table
 from rich.text import Text
 
 from porolub.scene.derived import derived
+from porolub.scene.describe import describe, readable
 from porolub.scene.effects import effects
 from porolub.scene.geometry import MeshFile
+from porolub.scene.history import period_of
+from porolub.scene.material import Pores
 from porolub.scene.scene import Scene
+from porolub.scene.transient import Time
 from porolub.scene.unknowns import estimate_unknowns
-
-_PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "u"), (1e-9, "n"))
 
 _FIELDS = {
     "displacement": "layer",
+    "velocity": "layer (rate of displacement, for inertia)",
     "pore_pressure": "layer, surface included",
     "volume_change": "layer (J - 1 on the pressure's nodes, stabilises carry)",
     "film_pressure": "lubricated surface",
@@ -51,17 +54,12 @@ def report(scene: Scene) -> RenderableType:
         _unknowns_table(scene, cost),
         "",
     ]
+    if scene.boundary:
+        parts += [_boundaries_table(scene), ""]
     if scene.pores is not None:  # all of them are about the fluid in the pores
         parts.append(_conventions_table(scene))
     notes = _notes(scene)
     return Group(*parts, *([""] if notes else []), *notes)
-
-
-def readable(value: float, unit: str) -> str:
-    """Write an SI value with a prefix, for instance ``58.2 um``."""
-    size = abs(value)
-    factor, prefix = next((p for p in _PREFIXES if size >= p[0] * 0.9999999), (1.0, ""))
-    return f"{value / factor:.4g} {prefix}{unit}"
 
 
 def _summary(scene: Scene) -> str:
@@ -87,8 +85,8 @@ def _effects_table(scene: Scene, cost: dict[str, int]) -> Table:
     table.add_column("what it adds")
     on = effects(scene)
     for name, setting, adds in _rows(scene, cost):
-        if name == "squeeze" and scene.time is None:
-            continue  # it needs time
+        if name in ("squeeze", "inertia") and scene.time is None:
+            continue  # they need time
         if name in on:
             table.add_row(name, "[green]yes[/]", setting, adds)
         else:
@@ -108,19 +106,26 @@ def _rows(scene: Scene, cost: dict[str, int]) -> list[tuple[str, str, str]]:
         g, k = readable(solid.shear_modulus, "Pa"), readable(solid.bulk_modulus, "Pa")
         stiffness = f"{solid.law}, G {g}, K {k}, {solid.base} base"
     film_cost = "acts on the pore pressure at the surface" if pores else unknowns("film_pressure")
-    load_kind = "approach" if scene.load is not None and scene.load.approach is not None else "load"
+    key = "approach" if scene.load is not None and scene.load.approach is not None else "force"
+    load_kind = "approach" if key == "approach" else "load"
     load_unit = "m" if load_kind == "approach" else "N/m" if scene.dimension == 2 else "N"
-    load = readable(scene.load.at(0.0), load_unit) if scene.load else ""
+    load = describe(getattr(scene.load, key), load_unit) if scene.load else ""
     motion_kind = scene.motion.kind if scene.motion else "rotation"
     speed_unit = "rad/s" if motion_kind == "rotation" else "m/s"
-    speed = f"{scene.motion.at(0.0):.4g} {speed_unit}" if scene.motion else ""
+    speed = describe(scene.motion.speed, speed_unit) if scene.motion else ""
     return [
         ("solid", stiffness, f"{unknowns('displacement')}; stiffness block"),
+        (
+            "inertia",
+            f"density {solid.density:g} kg/m^3" if solid and solid.density else "",
+            f"{unknowns('velocity')}; mass block",
+        ),
         (
             "pores",
             f"a {pores.biot:g}, kappa {pores.permeability:.4g} m^2" if pores else "",
             f"{unknowns('pore_pressure')}; flow block, coupling to the solid",
         ),
+        ("compressibility", _compressible(pores), "density follows pressure in storage and flow"),
         ("carry", "v . grad J", f"{unknowns('volume_change')}; coupling pressure to displacement"),
         ("film", f"eta {readable(film.viscosity, 'Pa s')}" if film else "", film_cost),
         ("squeeze", "dh/dt", "coupling in time"),
@@ -129,11 +134,37 @@ def _rows(scene: Scene, cost: dict[str, int]) -> list[tuple[str, str, str]]:
             f"friction {contact.friction:g}" if contact else "",
             f"{unknowns('contact_pressure')}; one condition a node",
         ),
-        ("friction_traction", "shears the layer", "unsymmetric coupling"),
+        ("friction_traction", _shear(scene), "unsymmetric coupling"),
         (motion_kind, speed, "nothing by itself"),
         (load_kind, load, "1 unknown, the approach" if load_kind == "load" else "nothing"),
-        ("time", f"to {scene.time.end:g} s" if scene.time else "", "many steps instead of one"),
+        ("time", _time(scene.time), "many steps instead of one"),
     ]
+
+
+def _compressible(pores: Pores | None) -> str:
+    if pores is None or pores.compressibility is None:
+        return ""
+    return f"chi {pores.compressibility:.4g} 1/Pa, porosity {pores.porosity:g}"
+
+
+def _shear(scene: Scene) -> str:
+    if scene.contact is None or scene.time is None:
+        return "shears the layer"
+    return f"shears the layer; passes zero speed within {scene.contact.friction_speed:g} m/s"
+
+
+def _time(time: Time | None) -> str:
+    """Write from where to where time runs, how exactly, and when it stops."""
+    if time is None:
+        return ""
+    start = "the steady state" if time.start == "steady" else "rest"
+    if time.approach is not None:
+        start += f" (plane at {readable(time.approach, 'm')})"
+    until = ", until periodic" if time.until == "periodic" else ""
+    return (
+        f"from {start} to {readable(time.end, 's')}{until}; "
+        f"tolerance {time.tolerance:g}, order {time.order}"
+    )
 
 
 def _unknowns_table(scene: Scene, cost: dict[str, int]) -> Table:
@@ -144,6 +175,20 @@ def _unknowns_table(scene: Scene, cost: dict[str, int]) -> Table:
     for field, count in cost.items():
         if field != "total":
             table.add_row(field, _FIELDS[field], f"{count:,}")
+    return table
+
+
+def _boundaries_table(scene: Scene) -> Table:
+    table = Table(title="Boundary values", title_justify="left")
+    table.add_column("boundary")
+    table.add_column("key")
+    table.add_column("value")
+    for path, history in scene.histories().items():
+        section, _, rest = path.partition(".")
+        if section == "boundary":
+            name, _, key = rest.partition(".")
+            unit = "m" if key.startswith("displacement") else "Pa"
+            table.add_row(name, key, describe(history, unit))
     return table
 
 
@@ -162,8 +207,18 @@ def _conventions_table(scene: Scene) -> Table:
 
 def _notes(scene: Scene) -> list[str]:
     d, notes = derived(scene), []
+    if scene.varies and scene.time is None:
+        notes.append("Without [time] all that changes with time is taken at t = 0.")
+    if scene.varies and scene.time is not None:
+        period = scene.period
+        notes.append(
+            "What changes with time has no common period."
+            if period is None
+            else f"All that changes with time repeats after {readable(period, 's')}."
+        )
+    begin = " at t = 0" if scene.motion is not None and period_of(scene.motion.speed) else ""
     if d.surface_speed is not None:
-        notes.append(f"The surfaces slide past each other at {d.surface_speed:.3g} m/s.")
+        notes.append(f"The surfaces slide past each other at {d.surface_speed:.3g} m/s{begin}.")
     if d.consolidation is not None and d.confined_modulus is not None:
         notes.append(
             f"Stiffness in confined compression {readable(d.confined_modulus, 'Pa')}, "

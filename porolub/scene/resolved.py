@@ -12,6 +12,8 @@ from porolub.scene.geometry import MeshFile
 if TYPE_CHECKING:
     from porolub.scene.scene import Scene
 
+LENGTH_OF_RUN = ("end", "until", "repeat_tolerance", "frames")
+
 
 def resolved(scene: "Scene") -> dict[str, Any]:
     """Return the scene as the tables of a scene file; read again it gives an equal scene.
@@ -40,9 +42,14 @@ def write_resolved(scene: "Scene", path: str | Path) -> None:
 
 
 def digest(scene: "Scene") -> str:
-    """Return a SHA-256 of all that changes the answer: no title, a mesh file by its content."""
+    """Return a SHA-256 of all that changes the answer: a mesh file or table by its content.
+
+    Left out are the title and what only decides how long a run is followed and what is kept of it.
+    """
     tables = resolved(scene)
     del tables["scene"]["title"]
+    for key in LENGTH_OF_RUN:
+        tables.get("time", {}).pop(key, None)
     if isinstance(scene.geometry, MeshFile):
         content = scene.geometry.path.read_bytes()
         tables["geometry"]["path"] = hashlib.sha256(content).hexdigest()

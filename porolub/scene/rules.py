@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from porolub.scene.geometry import MeshFile
 from porolub.scene.operation import Rotation, Sliding
+from porolub.scene.time_rules import time_violations
 
 if TYPE_CHECKING:
     from porolub.scene.scene import Scene
@@ -18,6 +19,7 @@ def violations(scene: "Scene") -> Iterator[str]:
     yield from _physics(scene)
     yield from _motion(scene)
     yield from _boundaries(scene)
+    yield from time_violations(scene)
 
 
 def _shape(scene: "Scene") -> Iterator[str]:

@@ -7,11 +7,15 @@ from pydantic import Field, model_validator
 from porolub.scene.base import Section, Whole, broken
 from porolub.scene.conditions import Boundary, Conventions
 from porolub.scene.discretisation import Mesh
+from porolub.scene.follows import with_what_follows
 from porolub.scene.geometry import Geometry
+from porolub.scene.history import History
 from porolub.scene.material import Film, Pores, Solid
-from porolub.scene.operation import Contact, Load, Motion, Time
+from porolub.scene.operation import Contact, Load, Motion
 from porolub.scene.resolved import digest, resolved
 from porolub.scene.rules import violations
+from porolub.scene.schedule import common_period, histories, kinks, varying
+from porolub.scene.transient import Time
 
 
 class Header(Section):
@@ -24,7 +28,8 @@ class Header(Section):
 class Scene(Section):
     """A checked scene; quantities are floats in SI units. An absent section is None.
 
-    ``motion`` and ``load`` may change with time: ask ``at(t)``; a steady run uses t = 0.
+    ``motion`` and ``load`` may change with time: ask ``at(t)``; so may values of a ``boundary``:
+    ask ``value_at(value, t)``. A steady run uses t = 0.
     """
 
     scene: Header = Header()
@@ -57,25 +62,42 @@ class Scene(Section):
             return self.pores.fluid_density
         return (self.film and self.film.fluid_density) or 1000.0
 
+    def histories(self) -> dict[str, float | History]:
+        """Return all values that may change with time, by their keys in the file."""
+        return histories(self)
+
+    @property
+    def varies(self) -> bool:
+        """Whether load, motion or any boundary value changes with time."""
+        return bool(varying(self))
+
+    @property
+    def period(self) -> float | None:
+        """The time after which all that changes repeats, s.
+
+        None if nothing changes, if something never repeats, or if the periods do not fit together.
+        """
+        return common_period(varying(self).values())
+
+    def kinks(self, start: float, end: float) -> list[float]:
+        """Return the times strictly between ``start`` and ``end`` (s) where a slope jumps.
+
+        Ascending; a time step should end at each of them.
+        """
+        return kinks(self, start, end)
+
     def resolved(self) -> dict[str, Any]:
         """Return every key with its value, defaults included, as a scene file has them."""
         return resolved(self)
 
     def digest(self) -> str:
-        """Return a hash of everything that changes the answer (not of the title)."""
+        """Return a hash of everything that changes the answer (title and length of run do not)."""
         return digest(self)
 
     @model_validator(mode="before")
     @classmethod
-    def _entering_follows_base(cls, data: Any) -> Any:
-        """A bonded layer is undisturbed far away: what enters is fresh unless asked otherwise."""
-        if not isinstance(data, dict):
-            return data
-        solid, conventions = data.get("solid"), data.get("conventions", {})
-        bonded = isinstance(solid, dict) and solid.get("base") == "bonded"
-        if bonded and isinstance(conventions, dict) and "entering" not in conventions:
-            return {**data, "conventions": {**conventions, "entering": "fresh"}}
-        return data
+    def _with_what_follows(cls, data: Any) -> Any:
+        return with_what_follows(data) if isinstance(data, dict) else data
 
     @model_validator(mode="after")
     def _fits_together(self) -> Self:

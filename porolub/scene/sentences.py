@@ -3,7 +3,7 @@
 import difflib
 import json
 from collections.abc import Callable
-from typing import Any, get_args
+from typing import Any, get_args, get_origin
 
 from pydantic import BaseModel, ValidationError
 from pydantic.fields import FieldInfo
@@ -11,7 +11,7 @@ from pydantic_core import ErrorDetails
 
 from porolub.scene.conditions import Boundary, Displacement, Traction
 from porolub.scene.geometry import Barrel, Block, MeshFile, Sector
-from porolub.scene.history import Harmonic
+from porolub.scene.histories import FORMS, keys_of
 from porolub.scene.operation import Rotation, Sliding
 from porolub.scene.scene import Scene
 from porolub.scene.units import Quantity
@@ -32,6 +32,7 @@ _NEEDED = {
     "model_type": "a table of keys is needed",
     "model_attributes_type": "a table of keys is needed",
     "dict_type": "a table of keys is needed",
+    "tuple_type": "an array in brackets is needed",
 }
 Loc = tuple[int | str, ...]
 
@@ -66,10 +67,12 @@ def toml_value(value: Any) -> str:
 
 def _key(loc: Loc) -> str:
     """Return the key as the user writes it: without the tags pydantic puts into unions."""
-    parts = [str(p) for p in loc if not str(p).startswith("<")]
+    parts = [p for p in loc if isinstance(p, str) and not p.startswith("<")]
     if parts and parts[0] in _TAGGED and len(parts) > 1:
         del parts[1]
-    return ".".join(parts) if len(parts) > 1 else f"[{parts[0]}]" if parts else "the scene"
+    entry = f" (no. {loc[-1] + 1})" if loc and isinstance(loc[-1], int) else ""  # of an array
+    key = ".".join(parts) if len(parts) > 1 else f"[{parts[0]}]" if parts else "the scene"
+    return key + entry
 
 
 def _model(loc: Loc) -> type[BaseModel]:
@@ -78,9 +81,10 @@ def _model(loc: Loc) -> type[BaseModel]:
         return Scene
     if loc[-1] == "<components>":
         return Traction
-    if loc[-1] == "<harmonic>":
+    if loc[-1] in FORMS:
+        form = FORMS[str(loc[-1])]
         annotation = _model(loc[:-2]).model_fields[str(loc[-2])].annotation
-        return _find(annotation, lambda part: part in Harmonic.__subclasses__()) or Harmonic
+        return _find(annotation, lambda p: isinstance(p, type) and issubclass(p, form)) or form
     if loc[0] == "boundary":
         return Displacement if len(loc) > 2 else Boundary
     if loc[0] in _TAGGED:
@@ -94,8 +98,13 @@ def _models(annotation: Any) -> list[type[BaseModel]]:
     return [t for t in members if isinstance(t, type) and issubclass(t, BaseModel)]
 
 
+def _allowed(loc: Loc) -> list[str]:
+    """Return the keys that may stand at ``loc``."""
+    return list(keys_of(str(loc[-1])) if loc and loc[-1] in FORMS else _model(loc).model_fields)
+
+
 def _nearest_key(loc: Loc) -> str | None:
-    near = difflib.get_close_matches(str(loc[-1]), _model(loc[:-1]).model_fields, 1)
+    near = difflib.get_close_matches(str(loc[-1]), _allowed(loc[:-1]), 1)
     return near[0] if near else None
 
 
@@ -106,6 +115,8 @@ def _sentence(detail: ErrorDetails, context: dict[str, Any]) -> str:
     if kind == "rule":
         where = f"[{key}]: " if loc and loc[0] == "boundary" else ""
         return where + str(ctx["text"])
+    if kind == "refused" and ctx["key"]:
+        return f"{key}.{ctx['key']} = {toml_value(value[ctx['key']])}: {ctx['reason']}."
     if kind == "refused":
         return f"{given}: {ctx['reason']}."
     if kind == "missing" and key == "[geometry]":
@@ -129,7 +140,7 @@ def _sentence(detail: ErrorDetails, context: dict[str, Any]) -> str:
 
 
 def _unknown_key(loc: Loc, given: str) -> str:
-    name, allowed = str(loc[-1]), list(_model(loc[:-1]).model_fields)
+    name, allowed = str(loc[-1]), _allowed(loc[:-1])
     what = "section" if len(loc) == 1 else "key"
     near, elsewhere = _nearest_key(loc), _sections_with(name)
     if near:
@@ -137,7 +148,8 @@ def _unknown_key(loc: Loc, given: str) -> str:
     elif elsewhere and loc[0] not in elsewhere:
         hint = f"did you mean {elsewhere[0]}.{name}?"
     else:
-        variant = f' for {_TAG_KEY[str(loc[0])]} = "{loc[1]}"' if loc[0] in _TAGGED else ""
+        tagged = loc[0] in _TAGGED and len(loc) == 3
+        variant = f' for {_TAG_KEY[str(loc[0])]} = "{loc[1]}"' if tagged else ""
         hint = f"allowed{variant} are {', '.join(allowed)}."
     shown = given if what == "key" else _key(loc)
     return f"{shown}: there is no such {what}; {hint}"
@@ -172,6 +184,8 @@ def _what(field: FieldInfo, context: dict[str, Any]) -> str:
     if marker is not None:
         kind = marker.kind_in(context)
         example = kind.example if not kind.unit else f'"{kind.example}"'
+        if get_origin(field.annotation) is tuple:
+            return f": an array is needed, each entry {kind.name}, such as [{example}, ...]"
         return f": {kind.name} is needed, such as {example}"
     choices = [str(c) for c in get_args(field.annotation) if isinstance(c, str | int)]
     return f": allowed are {', '.join(choices)}" if choices else ""

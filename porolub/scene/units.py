@@ -83,12 +83,19 @@ def parse(text: str, kind: Kind) -> float:
         raise NotAQuantity(f"the unit is missing; {wanted}")
     if "," in unit_text:
         raise NotAQuantity(f"a comma cannot stand in a number, write a point; {wanted}")
+    return _finite(Decimal(number) * _si_factor(unit_text, kind, wanted))
+
+
+@lru_cache(maxsize=256)
+def _si_factor(unit_text: str, kind: Kind, wanted: str) -> Decimal:
+    """Return how many SI units of ``kind`` a unit is; tables ask for the same one often."""
     unit = _unit(unit_text, wanted)
     if unit.dimensionality != registry().Quantity(1, kind.unit).dimensionality:
         raise NotAQuantity(f"this is {_describe(unit)}; {wanted}")
     if _has_angle(unit) != kind.angular:
         raise NotAQuantity(f"this is {_describe(unit)}; {wanted}")
-    return _finite((unit * Decimal(number)).to(kind.unit).magnitude)
+    factor: Decimal = unit.to(kind.unit).magnitude
+    return factor
 
 
 def _unit(unit_text: str, wanted: str) -> Any:
@@ -203,11 +210,13 @@ Modulus = Annotated[float, Quantity(PRESSURE, above=0)]
 Viscosity = Annotated[float, Quantity(VISCOSITY, above=0)]
 Permeability = Annotated[float, Quantity(PERMEABILITY, above=0)]
 Storage = Annotated[float, Quantity(COMPRESSIBILITY, at_least=0)]
+Compressibility = Annotated[float, Quantity(COMPRESSIBILITY, above=0)]
 Density = Annotated[float, Quantity(DENSITY, above=0)]
 Angle = Annotated[float, Quantity(ANGLE)]
 SectorAngle = Annotated[float, Quantity(ANGLE, above=0, below="90 deg")]
 AngularSpeed = Annotated[float, Quantity(ANGULAR_SPEED)]
 Speed = Annotated[float, Quantity(SPEED)]
+PositiveSpeed = Annotated[float, Quantity(SPEED, above=0)]
 Frequency = Annotated[float, Quantity(FREQUENCY, above=0)]
 PositiveTime = Annotated[float, Quantity(TIME, above=0)]
 Force = Annotated[float, LoadForce(LINE_LOAD)]

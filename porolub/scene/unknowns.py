@@ -12,9 +12,10 @@ def estimate_unknowns(scene: Scene) -> dict[str, int]:
     """Return the number of unknowns per field and in total.
 
     Fields that the scene does not have are left out. Nodes with prescribed values are counted:
-    they stay in the system. Contact pressure sits on the displacement nodes of the lubricated
-    surface; pore pressure has its own degree, and so has the projected volume change that
-    stabilises the carry term; without pores the film pressure sits on the surface only.
+    they stay in the system. Velocity comes with inertia. Contact pressure sits on the displacement
+    nodes of the lubricated surface; pore pressure has its own degree, and so has the projected
+    volume change that stabilises the carry term; without pores the film pressure sits on the
+    surface only.
     Raises SceneError if a mesh file cannot be read.
     """
     mesh = scene.mesh
@@ -22,6 +23,8 @@ def estimate_unknowns(scene: Scene) -> dict[str, int]:
     count = {}
     if scene.solid is not None:
         count["displacement"] = scene.dimension * layer(mesh.degree)
+        if scene.solid.inertia:
+            count["velocity"] = count["displacement"]
     if scene.pores is not None:
         count["pore_pressure"] = layer(mesh.pressure_degree)
         if scene.pores.carry:

@@ -63,16 +63,54 @@ def _table(required: dict[str, Any], optional: dict[str, Any]) -> st.SearchStrat
     return st.fixed_dictionaries(required, optional=optional)
 
 
-def _history(unit: str, low: float, high: float) -> st.SearchStrategy[Any]:
-    harmonic = _table(
+def _harmonic(unit: str, low: float, high: float, share: float) -> st.SearchStrategy[Any]:
+    """Harmonics about means in a range; the amplitude is at most a share of the lowest mean."""
+    return _table(
         {
             "mean": amount(unit, low, high),
-            "amplitude": amount(unit, low, high),
+            "amplitude": amount(unit, -share * abs(low), share * abs(low)),
             "frequency": amount("Hz", 1e-3, 1e3),
         },
         {"shape": st.sampled_from(["sine", "cosine"]), "phase": amount("deg", -360, 360)},
     )
-    return amount(unit, low, high) | harmonic
+
+
+@st.composite
+def sample_tables(draw: st.DrawFn, unit: str, low: float, high: float) -> dict[str, Any]:
+    """Tables of samples with values in a range, repeated or not."""
+    gaps = draw(st.lists(st.floats(1e-3, 10), min_size=1, max_size=6))
+    times, values = [draw(st.floats(0, 2))], [draw(st.floats(low, high))]
+    for gap in gaps:
+        times.append(times[-1] + gap)
+        values.append(draw(st.floats(low, high)))
+    repeat = draw(st.booleans())
+    if repeat:
+        values[-1] = values[0]
+    return {
+        "times": [f"{t!r} s" for t in times],
+        "values": [f"{v!r} {unit}" for v in values],
+        "interpolation": draw(st.sampled_from(["linear", "smooth"])),
+        "repeat": repeat,
+    }
+
+
+def histories(unit: str, low: float, high: float, share: float = 1.0) -> st.SearchStrategy[Any]:
+    """Constants, harmonics and samples; with share < 1 none of them changes sign."""
+    return (
+        amount(unit, low, high) | _harmonic(unit, low, high, share) | sample_tables(unit, low, high)
+    )
+
+
+def _loads(unit: str) -> st.SearchStrategy[Any]:
+    gait = _table(
+        {
+            "profile": st.just("gait"),
+            "scale": amount(unit, 1, 1e4),
+            "frequency": amount("Hz", 1, 9),
+        },
+        {"peak": st.floats(4, 20), "trough": st.floats(0.1, 3)},
+    )
+    return histories(unit, 0.1, 1e4, share=0.9) | gait
 
 
 _MODULI = st.one_of(
@@ -127,13 +165,13 @@ def scene_tables(draw: st.DrawFn) -> dict[str, Any]:
     if draw(st.booleans()):
         tables["contact"] = draw(_table({}, {"friction": st.floats(0, 1)}))
     if "film" in tables or "contact" in tables:
-        force = _history("N" if dimension == 3 else "N/m", 0.1, 1e4)
         kind = draw(st.sampled_from(["force", "approach"]))
-        tables["load"] = {kind: draw(force if kind == "force" else _history("um", -100, 100))}
+        loads = _loads("N" if dimension == 3 else "N/m")
+        tables["load"] = {kind: draw(loads if kind == "force" else histories("um", -100, 100))}
     if shape != "block" and draw(st.booleans()):
-        tables["motion"] = {"kind": "rotation", "speed": draw(_history("rpm", -20, 20))}
+        tables["motion"] = {"kind": "rotation", "speed": draw(histories("rpm", -20, 20))}
     elif draw(st.booleans()):
-        tables["motion"] = {"kind": "sliding", "speed": draw(_history("mm/s", -200, 200))}
+        tables["motion"] = {"kind": "sliding", "speed": draw(histories("mm/s", -200, 200))}
     if draw(st.booleans()):
         tables["pores"] = draw(
             _table(
@@ -145,6 +183,9 @@ def scene_tables(draw: st.DrawFn) -> dict[str, Any]:
                 {"storage": amount("1/GPa", 0, 10), "fluid_density": amount("kg/l", 0.5, 2)},
             )
         )
+        if draw(st.booleans()):
+            chi = {"porosity": 0.8, "compressibility": "0.1 1/GPa", "storage": "2.08 1/GPa"}
+            tables["pores"] |= chi
         tables["pores"]["carry"] = tables.get("motion", {}).get("kind") == "rotation"
         inlet = "inlet" if shape != "block" else "left"
         tables["boundary"] = {
@@ -152,9 +193,9 @@ def scene_tables(draw: st.DrawFn) -> dict[str, Any]:
                 _table(
                     {},
                     {
-                        "displacement": _table({"normal": amount("um", -10, 10)}, {}),
-                        "traction": _table({"y": amount("kPa", -10, 10)}, {}),
-                        "pressure": amount("kPa", 0, 100),
+                        "displacement": _table({"normal": histories("um", -10, 10)}, {}),
+                        "traction": _table({"y": histories("kPa", -10, 10)}, {}),
+                        "pressure": histories("kPa", 0, 100),
                     },
                 )
             )
@@ -173,7 +214,17 @@ def scene_tables(draw: st.DrawFn) -> dict[str, Any]:
         tables["time"] = draw(
             _table(
                 {"end": amount("min", 0.01, 10)},
-                {"tolerance": st.floats(1e-6, 0.5), "order": st.sampled_from([1, 2, 3])},
+                {
+                    "tolerance": st.floats(1e-6, 0.5),
+                    "order": st.sampled_from([1, 2, 3]),
+                    "step_max": amount("s", 1e-3, 1),
+                    "first_step": amount("us", 1, 1000),
+                    "start": st.sampled_from(["steady", "rest"]),
+                    "repeat_tolerance": st.floats(1e-6, 0.5),
+                    "frames": st.integers(0, 100),
+                },
             )
         )
+        if "density" in tables["solid"]:
+            tables["solid"]["inertia"] = draw(st.booleans())
     return tables

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porolub.scene import scene_from_dict, value_at
-from porolub.scene.history import harmonic
+from porolub.scene.harmonic import harmonic
 from tests.scene.scenes import CUBE, ROLLING, changed
 
 

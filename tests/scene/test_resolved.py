@@ -33,7 +33,11 @@ def test_it_holds_every_key_with_its_default() -> None:
     }
     assert tables["pores"]["fluid_density"] == "1000.0 kg/m^3"
     assert tables["pores"]["permeability"] == "1e-15 m^2"
-    assert tables["contact"] == {"friction": 0.45, "friction_traction": False}
+    assert tables["contact"] == {
+        "friction": 0.45,
+        "friction_traction": False,
+        "friction_speed": "0.001 m/s",
+    }
     assert tables["conventions"] == {
         "surface_traction": "balanced",
         "frame": "spatial",
@@ -60,6 +64,21 @@ def test_the_digest_follows_what_changes_the_answer() -> None:
     assert scene_from_dict(changed(ROLLING, mesh={"degree": 2})).digest() == digest
     assert scene_from_dict(changed(ROLLING, load={"force": "1.6 kN/m"})).digest() != digest
     assert scene_from_dict(changed(ROLLING, film=None)).digest() != digest
+
+
+def test_the_digest_does_not_follow_how_long_a_run_is_followed() -> None:
+    def digest(**time: Any) -> str:
+        load = {"mean": "2 kN/m", "amplitude": "1 kN/m", "frequency": "1 Hz"}
+        tables = changed(ROLLING, load={"force": load}, time={"end": "5 s"} | time)
+        return scene_from_dict(tables).digest()
+
+    same = digest()
+    assert digest(end="7 s") == same
+    assert digest(until="periodic", repeat_tolerance=0.1, frames=3) == same
+    assert digest(start="steady") == same
+    assert digest(start="rest") != same
+    assert digest(tolerance=1e-4) != same
+    assert digest(order=1) != same
 
 
 def test_the_digest_of_a_mesh_file_is_that_of_its_content(tmp_path: Path) -> None:
