@@ -58,7 +58,7 @@ def report(scene: Scene) -> RenderableType:
         parts += [_boundaries_table(scene), ""]
     if scene.pores is not None:  # all of them are about the fluid in the pores
         parts.append(_conventions_table(scene))
-    notes = _notes(scene)
+    notes = [Text(note) for note in _notes(scene)]
     return Group(*parts, *([""] if notes else []), *notes)
 
 

@@ -1,4 +1,4 @@
-"""Histories of load and motion: Eqs. 23 and 24 of the reference paper."""
+"""Constants and harmonics: Eqs. 23 and 24 of the reference paper."""
 
 import math
 
@@ -7,7 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porolub.scene import scene_from_dict, value_at
-from porolub.scene.harmonic import harmonic
+from porolub.scene.harmonic import Harmonic, harmonic
+from porolub.scene.history import highest_of, kinks_of, lowest_of, period_of
+from porolub.scene.units import Pressure
 from tests.scene.scenes import CUBE, ROLLING, changed
 
 
@@ -54,5 +56,44 @@ def test_a_harmonic_repeats_and_stays_within_its_amplitude(
     )
 
 
-def test_value_at_takes_plain_numbers() -> None:
+@given(
+    st.floats(-10, 10),
+    st.floats(-10, 10).filter(lambda a: abs(a) > 0.01),
+    st.floats(0.1, 10),
+    st.floats(-720, 720),
+    st.sampled_from(["sine", "cosine"]),
+)
+def test_a_harmonic_reaches_its_extremes_when_it_says(
+    mean: float, amplitude: float, frequency: float, phase: float, shape: str
+) -> None:
+    wave: Harmonic[float] = Harmonic[Pressure].model_validate(
+        {
+            "mean": f"{mean!r} Pa",
+            "amplitude": f"{amplitude!r} Pa",
+            "frequency": f"{frequency!r} Hz",
+            "phase": f"{phase!r} deg",
+            "shape": shape,
+        }
+    )
+    assert wave.period == pytest.approx(1 / frequency)
+    assert wave.kinks(0.0, 100.0) == []
+    for extreme, value in ((wave.lowest, -abs(amplitude)), (wave.highest, abs(amplitude))):
+        assert extreme.value == pytest.approx(mean + value)
+        assert wave.at(extreme.time) == pytest.approx(extreme.value)
+        assert 0 <= extreme.time <= 1 / frequency
+
+
+def test_a_harmonic_without_amplitude_is_a_constant() -> None:
+    flat = Harmonic[Pressure].model_validate(
+        {"mean": "3 Pa", "amplitude": "0 Pa", "frequency": "1 Hz"}
+    )
+    assert flat.period is None
+    assert (flat.lowest.value, flat.highest.value, flat.at(0.3)) == (3.0, 3.0, 3.0)
+
+
+def test_plain_numbers_answer_as_histories_do() -> None:
     assert value_at(3.0, 17.0) == 3.0
+    assert period_of(3.0) is None
+    assert kinks_of(3.0, 0.0, 9.0) == []
+    assert lowest_of(3.0) == highest_of(3.0)
+    assert lowest_of(3.0).value == 3.0
