@@ -64,7 +64,7 @@ class Curve:
         """Samples where the slope jumps; of a period, without its end."""
         slopes = np.diff(self.values) / np.diff(self.times)
         before = np.append(slopes[-1] if self.repeat else 0.0, slopes)
-        after = np.append(slopes, slopes[0] if self.repeat else 0.0)
+        after = np.append(slopes, 0.0)
         jumps = abs(after - before) > NO_JUMP * abs(slopes).max()
         corners = [float(t) for t in self.times[jumps]]
         return [t for t in corners if t != self.last] if self.repeat else corners

@@ -1,6 +1,7 @@
 """The gait cycle: its printed points, a continuous slope, and constant in swing."""
 
 import itertools
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -28,6 +29,12 @@ def test_it_runs_through_the_points_of_the_hip_simulator_standard(
 ) -> None:
     assert gait().at(phase) == pytest.approx(1e3 * kilonewton)
     assert gait(frequency="2 Hz").at(3 + phase / 2) == pytest.approx(1e3 * kilonewton)
+
+
+def test_it_rises_from_heel_strike_on_and_falls_until_toe_off() -> None:
+    load = gait()
+    assert load.at(0.001) > load.at(0.0)
+    assert load.at(0.599) > load.at(0.6)
 
 
 def test_peak_and_trough_are_multiples_of_the_load_in_swing() -> None:
@@ -70,8 +77,6 @@ def test_its_slope_is_continuous_all_round_the_cycle() -> None:
 
 
 def test_the_paper_s_case_5_is_a_gait_of_a_third_of_a_kilonewton() -> None:
-    from pathlib import Path
-
     scene = load_scene(Path(__file__).parents[2] / "jobs" / "case5.toml")
     assert scene.load is not None
     assert scene.load.force == gait()

@@ -81,6 +81,19 @@ def test_what_repeats_repeats_before_its_first_sample_too() -> None:
     assert late.kinks(0.0, 1.6) == [0.5, 1.0, 1.5]
 
 
+@given(st.lists(st.floats(-1, 1), min_size=2, max_size=6))
+def test_a_smooth_cycle_has_no_corner_where_it_closes(values: list[float]) -> None:
+    """The slope there is that of a cycle which begins at any other of its samples."""
+    n = len(values)
+    turned = values[1:] + values[:1]
+    times = [float(k) for k in range(n + 1)]
+    one = Curve(times, [*values, values[0]], smooth=True, repeat=True)
+    other = Curve(times, [*turned, turned[0]], smooth=True, repeat=True)
+    assert [one.at(t / 7) for t in range(7 * n)] == pytest.approx(
+        [other.at(t / 7 - 1) for t in range(7 * n)], abs=1e-9
+    )
+
+
 @given(TABLES)
 def test_it_takes_the_samples_values_at_their_times(table: dict[str, Any]) -> None:
     history = samples(**table)

@@ -1,9 +1,11 @@
 """Histories in CSV files: their content counts, and every mistake is named with its line."""
 
+import time
 from pathlib import Path
 from typing import Any
 
 import pytest
+import tomli_w
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
@@ -30,8 +32,6 @@ def test_a_table_is_read_with_its_units(tmp_path: Path) -> None:
 
 
 def test_its_path_is_relative_to_the_scene_file(tmp_path: Path) -> None:
-    import tomli_w
-
     (tmp_path / "tables").mkdir()
     (tmp_path / "tables" / "load.csv").write_text(GOOD)
     tables = changed(ROLLING, load={"force": {"table": "tables/load.csv"}}, time={"end": "5 s"})
@@ -191,8 +191,6 @@ def test_numbers_are_read_to_the_last_digit(
 
 
 def test_long_tables_are_read_in_a_moment(tmp_path: Path) -> None:
-    import time
-
     rows = [f"{k / 1000!r}, {1 + k % 7}" for k in range(10_000)]
     begin = time.perf_counter()
     scene = loaded(tmp_path, "\n".join(["t [s], F [kN/m]", *rows]))
