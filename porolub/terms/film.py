@@ -64,20 +64,24 @@ class Film:
         return g - np.einsum("...d,...d->...", g, n)[..., None] * n
 
     def flow(self, at: Points, out: Integrand) -> None:
-        h, dh = film_thickness(self.plane.gap(at))
-        U = self.operation.entrainment(at.position, at.normal)
-        g, n = self.surface_gradient(at), at.normal
-        k, dk = self.conductance(h), self.law.conductance_derivative(h)
-        out.residual("p", GRAD, k[..., None] * g - h[..., None] / 2.0 * U)
-        if out.wants_jacobian:
-            tangential = np.eye(at.dim) - n[..., :, None] * n[..., None, :]
-            out.jacobian("p", GRAD, "p", GRAD, k[..., None, None] * tangential)
-            by_gap = (dk[..., None] * g - U / 2.0) * dh[..., None]
-            self.plane.chain(at, out, "p", GRAD, by_gap)
+        self.transport(at, out)
         if self.upwind is not None:
-            self._upwind(at, out, h, dh, U)
+            self._upwind(at, out)
 
-    def _upwind(self, at: Points, out: Integrand, h: Array, dh: Array, U: Array) -> None:
+    def transport(self, at: Points, out: Integrand, density: Array | float = 1.0) -> None:
+        """- flux . grad q times a density (ne, nq) that the tangent holds fixed."""
+        r = np.broadcast_to(density, at.weights.shape)
+        out.residual("p", GRAD, self.flux(at), weight=-r)
+        if out.wants_jacobian:
+            h, dh = film_thickness(self.plane.gap(at))
+            U = self.operation.entrainment(at.position, at.normal)
+            g, n = self.surface_gradient(at), at.normal
+            tangential = np.eye(at.dim) - n[..., :, None] * n[..., None, :]
+            out.jacobian("p", GRAD, "p", GRAD, tangential, weight=r * self.conductance(h))
+            by_h = self.law.conductance_derivative(h)[..., None] * g - U / 2.0
+            self.plane.chain(at, out, "p", GRAD, (r * dh)[..., None] * by_h)
+
+    def _upwind(self, at: Points, out: Integrand) -> None:
         """Streamline diffusion of the film thickness where the elements do not resolve it.
 
         The deformable surface turns U/2 dh/ds into transport of h; film and pores answer a
@@ -87,6 +91,8 @@ class Film:
         """
         assert self.upwind is not None
         modulus, mobility = self.upwind
+        h, dh = film_thickness(self.plane.gap(at))
+        U = self.operation.entrainment(at.position, at.normal)
         speed = np.linalg.norm(U, axis=-1)
         s = U / np.where(speed > 0, speed, 1.0)[..., None]
         length = at.domain.length_along(s, at.rows)

@@ -11,11 +11,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from porolub.fem.dofs import Field
 from porolub.fem.points import GRAD, VALUE, Integrand, Points
 from porolub.laws import tensors
 from porolub.terms.term import Part
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -46,11 +49,20 @@ class Pores:
             if self.spatial and d.finite:
                 out.jacobian("u", GRAD, "u", GRAD, d.dcof, weight=-a * p)
 
-    def mass(self, at: Points, out: Integrand) -> None:
-        k, g, d = self.mobility, at.grad("p"), at.deformation
-        K = d.mobility_tensor if self.spatial else at.constant(np.eye(at.dim))
+    def mass(self, at: Points, out: Integrand, density: Array | float = 1.0) -> None:
+        """K grad p times a density (ne, nq) that the tangent holds fixed."""
+        k, g, d = self.mobility * density, at.grad("p"), at.deformation
+        K = self.conductance(at)
         out.residual("p", GRAD, tensors.apply(K, g), weight=k)
         if out.wants_jacobian:
             out.jacobian("p", GRAD, "p", GRAD, K, weight=k)
             if self.spatial and d.finite:
                 out.jacobian("p", GRAD, "u", GRAD, d.mobility_flux_derivative(g), weight=k)
+
+    def flow(self, at: Points) -> Array:
+        """K grad p (ne, nq, dim): the flow of fluid volume, turned round."""
+        return self.mobility * tensors.apply(self.conductance(at), at.grad("p"))
+
+    def conductance(self, at: Points) -> Array:
+        """K / (kappa/eta), (ne, nq, dim, dim)."""
+        return at.deformation.mobility_tensor if self.spatial else at.constant(np.eye(at.dim))

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from porolub.fem.dofs import Field
 from porolub.fem.points import VALUE, Integrand, Points
 from porolub.laws.lubricant import film_thickness
 from porolub.terms.plane import Plane
 from porolub.terms.term import Part
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -32,8 +37,9 @@ class Squeeze:
         blocks = self.plane.blocks("p", self.displacement, self.approach)
         return [Part(f"facets:{self.boundary}", self.content, blocks)]
 
-    def content(self, at: Points, out: Integrand) -> None:
+    def content(self, at: Points, out: Integrand, density: Array | float = 1.0) -> None:
+        """h times a density (ne, nq) that the tangent holds fixed."""
         h, dh = film_thickness(self.plane.gap(at))
-        out.residual("p", VALUE, h)
+        out.residual("p", VALUE, density * h)
         if out.wants_jacobian:
-            self.plane.chain(at, out, "p", VALUE, dh)
+            self.plane.chain(at, out, "p", VALUE, density * dh)

@@ -2,7 +2,8 @@
 
 A term declares the fields it adds and reads and, for each integration domain, the matrix blocks
 it may fill and the function that adds its pointwise contributions.  Terms are summed; none knows
-another.  All numbers inside terms are scaled (see ``porolub.solve.scales``).
+another, but for those that multiply others' fluxes (``compressibility``).  All numbers inside
+terms are scaled (see ``porolub.solve.scales``).
 """
 
 from __future__ import annotations
