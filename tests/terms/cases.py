@@ -3,13 +3,16 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from porolub.laws.fluid import CompressibleFluid
 from porolub.laws.lubricant import Newtonian
 from porolub.laws.solid import LinearElastic, NeoHookean
 from porolub.mesh import Mesh
 from porolub.terms.carry import Carry
+from porolub.terms.compressibility import CompressibleFilm, CompressiblePores
 from porolub.terms.contact import Contact
 from porolub.terms.drainage import Drainage
 from porolub.terms.film import Film
+from porolub.terms.inertia import Inertia
 from porolub.terms.load import LoadBalance
 from porolub.terms.operation import Operation
 from porolub.terms.plane import Plane
@@ -24,7 +27,8 @@ from tests.terms.support import operation, plane_below
 
 LINEAR, NEO = LinearElastic(0.45, 0.7), NeoHookean(0.45, 0.7)
 LUBRICANT = Newtonian(viscosity=1e-3, shear_film_min=1e-3)
-BIOT, MOBILITY = 0.9, 0.7
+BIOT, MOBILITY, STORAGE, POROSITY = 0.9, 0.7, 0.6, 0.8
+FLUID = CompressibleFluid(0.6)
 
 
 @dataclass(frozen=True)
@@ -76,6 +80,26 @@ def squeeze(displacement: bool, approach: bool) -> Callable[[Setting], Term]:
     return lambda s: Squeeze(s.plane, s.boundary, displacement, approach)
 
 
+def compressible_pores(spatial: bool, fresh: bool | None) -> Callable[[Setting], Term]:
+    """``fresh`` None: nothing is carried."""
+    def build(s: Setting) -> Term:
+        carry = None if fresh is None else Carry(BIOT, s.operation, s.ends, fresh)
+        return CompressiblePores(FLUID, POROSITY, Pores(BIOT, MOBILITY, spatial, 1),
+                                 Storage(BIOT, STORAGE), carry)
+
+    return build
+
+
+def compressible_film(displacement: bool, approach: bool,
+                      squeezed: bool = True) -> Callable[[Setting], Term]:
+    def build(s: Setting) -> Term:
+        film = Film(LUBRICANT, s.plane, s.operation, s.boundary, displacement, approach, 1, False)
+        store = Squeeze(s.plane, s.boundary, displacement, approach) if squeezed else None
+        return CompressibleFilm(FLUID, film, store)
+
+    return build
+
+
 UU, UP, PU, PP = ("u", "u"), ("u", "p"), ("p", "u"), ("p", "p")
 SURFACE_PAIRS = {PP, PU, ("p", "v0")}
 
@@ -113,6 +137,21 @@ CASES = {
                     surface=True),
     "contact, friction": Case(contact(0.45), ("u", "v0"),
                               {("u", "l"), ("l", "l"), ("l", "u"), ("l", "v0")}, surface=True),
+    "inertia": Case(lambda s: Inertia(0.3, s.mesh.dim, s.mesh.degree), ("u",),
+                    {("u", "w"), ("w", "u"), ("w", "w")}),
+    "compressible pores, spatial": Case(compressible_pores(True, False), ("u", "p"), {PU, PP}),
+    "compressible pores, material, fresh": Case(compressible_pores(False, True), ("u", "p"),
+                                                {PU, PP}),
+    "compressible pores at rest": Case(compressible_pores(False, None), ("u", "p"), {PU, PP}),
+    "compressible film": Case(compressible_film(True, True), ("u", "p", "v0"), SURFACE_PAIRS,
+                              surface=True),
+    "compressible film of a sliding plane": Case(
+        compressible_film(True, True), ("u", "p", "v0"), SURFACE_PAIRS, surface=True,
+        kind="sliding"),
+    "compressible film, rigid": Case(compressible_film(False, True, False), ("p", "v0"),
+                                     {PP, ("p", "v0")}, surface=True),
+    "compressible film, given approach": Case(compressible_film(True, False), ("u", "p"),
+                                              {PP, PU}, surface=True),
     "open surface": Case(lambda s: Drainage(1e3, s.plane, s.boundary, True), ("u", "p", "v0"),
                          SURFACE_PAIRS, surface=True),
     "load": Case(lambda s: LoadBalance(s.operation, s.boundary, 2.0, True, True), ("p", "l"),

@@ -2,10 +2,12 @@
 
 u_i = 0.2 sin(k_i . X + c_i), p = 0.3 + 0.2 cos(k . X + c).  The strong form
 
-    - Div P(F) + a B grad p = f,    - Div(K grad p) + a v . grad J + (m - 0) / dt = s
+    rho_s w / dt - Div P(F) + a B grad p = f,    w = u / dt,
+    - Div(r K grad p) + Div(r (e + a (J - 1)) v) + m / dt = s,  m = r (e + a (J - 1) + S_s p) - e
 
-(B = cof F, K = (kappa/eta) J C^-1 in the spatial frame) is differentiated by complex steps, so
-it shares no line with the weak form of the terms.  Boundary conditions: u given but on the
+(B = cof F, K = (kappa/eta) J C^-1 in the spatial frame, r = exp(chi p), S = e chi + S_s, a step
+from rest) is differentiated by complex steps, so it shares no line with the weak form of the
+terms.  Boundary conditions: u given but on the
 lubricated surface, where the total traction (P - a p B) N acts; p given but at the ends, where
 the flux K grad p . N enters.
 """
@@ -26,6 +28,7 @@ from porolub.terms.term import Part
 from tests.terms.support import SHIFTS, WAVES, field_values, vector
 
 Array = NDArray[np.float64]
+CHOSEN = ("u", "p", "w")  # fields the exact solution gives
 STEP = 1e-30  # of the complex step: no cancellation, so as small as we like
 
 
@@ -41,6 +44,9 @@ class Exact:
     spatial: bool
     operation: Operation
     rate: float = 0.0  # 1 / time step, from an undeformed state
+    density: float = 0.0  # of the skeleton
+    compressibility: float = 0.0
+    porosity: float = 0.0
     size: float = 0.2
     swing: float = 0.2  # of the pressure
 
@@ -50,6 +56,13 @@ class Exact:
 
     def p(self, X):
         return 0.3 + self.swing * np.cos(X @ WAVES[2, : X.shape[-1]] + 0.4)
+
+    def w(self, X):
+        return self.rate * self.u(X)
+
+    def ratio(self, X):
+        """r = rho / rho_0."""
+        return np.exp(self.compressibility * self.p(X))
 
     def grad_p(self, X):
         k = WAVES[2, : X.shape[-1]]
@@ -77,8 +90,8 @@ class Exact:
             np.eye(X.shape[-1]), (*X.shape, X.shape[-1]))
 
     def flow(self, X):
-        """K grad p."""
-        g = self.mobility * self.grad_p(X)
+        """r K grad p."""
+        g = self.mobility * self.ratio(X)[..., None] * self.grad_p(X)
         if not self.spatial:
             return g
         _, J, cof = self.deformation(X)
@@ -93,14 +106,19 @@ class Exact:
 
     def body_force(self, X):
         drag = self.biot * np.einsum("...ij,...j->...i", self.coupling(X), self.grad_p(X))
-        return drag - self.divergence(self.stress, X)
+        return self.density * self.rate * self.w(X) + drag - self.divergence(self.stress, X)
+
+    def pore_fluid(self, X):
+        """r (e + a (J - 1))."""
+        volume = self.porosity + self.biot * (self.deformation(X)[1] - 1)
+        return self.ratio(X) * volume
 
     def source(self, X):
         v = self.operation.body_velocity(X)
-        carried = self.divergence(lambda Z: self.deformation(Z)[1][..., None] * v, X)
-        content = self.biot * (self.deformation(X)[1] - 1) + self.storage * self.p(X)
-        return (self.biot * carried - self.divergence(self.flow, X)
-                + self.rate * content)
+        carried = self.divergence(lambda Z: self.pore_fluid(Z)[..., None] * v, X)
+        grains = self.storage - self.porosity * self.compressibility
+        content = self.pore_fluid(X) - self.porosity + self.ratio(X) * grains * self.p(X)
+        return carried - self.divergence(self.flow, X) + self.rate * content
 
     def traction(self, X, N):
         """Total traction (P - a p B) N."""
@@ -165,8 +183,9 @@ def given(dofs: Dofs, exact: Exact, loaded: str, ends: tuple[str, ...]) -> Const
 def interpolated(dofs: Dofs, exact: Exact) -> Array:
     """Nodal values of the exact solution, a local state."""
     local = np.zeros(dofs.size_local)
-    for name in ("u", "p"):
-        field_values(dofs, name, getattr(exact, name), local)
+    for name in CHOSEN:
+        if name in dofs.fields:
+            field_values(dofs, name, getattr(exact, name), local)
     return local
 
 

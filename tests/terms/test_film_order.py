@@ -1,4 +1,7 @@
-"""The film alone over a smooth gap: order degree + 1 in L2 for a manufactured pressure."""
+"""The film alone over a smooth gap: order degree + 1 in L2 for a manufactured pressure.
+
+Of an incompressible fluid in a steady state, and of a compressible one in a step from p = 0.
+"""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -8,9 +11,12 @@ import pytest
 
 from porolub.fem.constraints import Constraints
 from porolub.fem.points import VALUE
+from porolub.laws.fluid import CompressibleFluid
 from porolub.laws.lubricant import Newtonian
+from porolub.terms.compressibility import CompressibleFilm
 from porolub.terms.film import Film
 from porolub.terms.plane import Plane
+from porolub.terms.squeeze import Squeeze
 from porolub.terms.term import Part
 from tests.fem import meshes
 from tests.terms.manufactured import STEP, solve
@@ -22,7 +28,7 @@ R = meshes.RADIUS
 
 @dataclass(frozen=True)
 class Source:
-    """What the manufactured pressure needs beside the wedge: div_s (- k grad p + h U / 2)."""
+    """What the manufactured pressure needs: div_s (r (- k grad p + h U / 2)) + (r - 1) h / dt."""
 
     boundary: str
     density: Callable
@@ -53,36 +59,47 @@ def angle(X):
     return np.arctan2(X[..., 0], R - X[..., 1])
 
 
+def wavy(phase):
+    return 0.4 + 0.3 * np.sin(phase + 0.5)
+
+
 def arc_pressure(X):
-    return 0.4 + 0.3 * np.sin(3 * angle(X) + 0.5)
+    return wavy(3 * angle(X))
 
 
-def arc_source(X):
+def arc_source(X, chi, rate):
     """Along the arc s = R t, over the gap h = LIFTED + R (1 - cos t)."""
-    def flow(t):
-        h = LIFTED + R * (1 - np.cos(t))
-        return flux(h, 0.9 * np.cos(3 * t + 0.5) / R, SPEED * R)
+    def gap(t):
+        return LIFTED + R * (1 - np.cos(t))
 
-    return derivative(flow, angle(X)) / R
+    def flow(t):
+        return np.exp(chi * wavy(3 * t)) * flux(gap(t), 0.9 * np.cos(3 * t + 0.5) / R, SPEED * R)
+
+    stored = (np.exp(chi * arc_pressure(X)) - 1) * gap(angle(X))
+    return derivative(flow, angle(X)) / R + rate * stored
 
 
 def flat_pressure(X):
-    return 0.4 + 0.3 * np.sin(1.1 * X[..., 0] + 0.9 * X[..., 2] + 0.5)
+    return wavy(1.1 * X[..., 0] + 0.9 * X[..., 2])
 
 
-def flat_source(X):
+def flat_source(X, chi, rate):
     """Over a flat top under a tilted plane: h = LIFTED + 0.1 (1.5 - x), U along x."""
     x, z = X[..., 0], X[..., 2]
 
+    def gap(x):
+        return LIFTED + 0.1 * (1.5 - x)
+
     def flow(x, z, k, speed):
-        h = LIFTED + 0.1 * (1.5 - x)
-        return flux(h, 0.3 * k * np.cos(1.1 * x + 0.9 * z + 0.5), speed)
+        phase = 1.1 * x + 0.9 * z
+        return np.exp(chi * wavy(phase)) * flux(gap(x), 0.3 * k * np.cos(phase + 0.5), speed)
 
+    stored = (np.exp(chi * flat_pressure(X)) - 1) * gap(x)
     return (derivative(lambda t: flow(t, z, 1.1, SPEED), x)
-            + derivative(lambda t: flow(x, t, 0.9, 0.0), z))
+            + derivative(lambda t: flow(x, t, 0.9, 0.0), z) + rate * stored)
 
 
-def error(kind, counts, degree):
+def error(kind, counts, degree, chi=0.0, rate=0.0):
     mesh, boundary = meshes.mesh(kind, *counts), meshes.surface(kind)
     curved = kind in meshes.CURVED
     at = operation("rotation" if curved else "sliding", SPEED, approach=-LIFTED,
@@ -90,7 +107,10 @@ def error(kind, counts, degree):
     plane = Plane((0.0, -1.0), 0.0, at) if curved else Plane((0.1, 1.0, 0.0), 1.15, at)
     pressure, density = (arc_pressure, arc_source) if curved else (flat_pressure, flat_source)
     film = Film(Newtonian(ETA, 1e-3), plane, at, boundary, False, False, degree, alone=True)
-    terms = [film, Source(boundary, density)]
+    terms = [film, Source(boundary, lambda X: density(X, chi, rate))]
+    if chi:
+        squeeze = Squeeze(plane, boundary, False, False)
+        terms += [squeeze, CompressibleFilm(CompressibleFluid(chi), film, squeeze)]
     dofs = system(mesh, terms, boundary=boundary).dofs
     nodes = dofs.nodes["p"]
     on_rim = np.zeros(len(nodes), bool)
@@ -102,21 +122,24 @@ def error(kind, counts, degree):
                         none, np.zeros((0, mesh.dim, mesh.dim)))
     of = system(mesh, terms, boundary=boundary, points=5, constraints=given)
     start = np.zeros(of.dofs.size_local)
+    if rate:
+        of.backward_euler(start, 1.0 / rate)
     field_values(of.dofs, "p", lambda X: np.full(len(X), 0.4), start)
     state, norms = solve(of, start)
     assert 0.0 < norms[-1] < 1e-11 < norms[0]
-    assert len(norms) == 3, "the film of a rigid body is linear"
+    assert (len(norms) == 3) == (chi == 0.0), "the film of a rigid body is linear in p, but for r"
     seen = everywhere(of, f"facets:{boundary}", state)
     return np.sqrt((seen.weights * (seen.value("p") - pressure(seen.position)) ** 2).sum())
 
 
 @pytest.mark.parametrize("degree", [1, 2])
+@pytest.mark.parametrize("fluid", [(0.0, 0.0), (0.8, 5.0)], ids=["incompressible", "compressible"])
 @pytest.mark.parametrize(
     ("kind", "refinement"),
     [("sector", [(10, 2), (20, 2), (40, 2)]), ("sector of triangles", [(10, 2), (20, 2), (40, 2)]),
      ("cuboid", [(4, 1, 4), (8, 1, 8), (16, 1, 16)])],
 )
-def test_order_of_the_film(kind, refinement, degree):
-    errors = np.array([error(kind, counts, degree) for counts in refinement])
+def test_order_of_the_film(kind, refinement, fluid, degree):
+    errors = np.array([error(kind, counts, degree, *fluid) for counts in refinement])
     assert errors.min() > 1e-9
     np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:])[-1], degree + 1, atol=0.1)
