@@ -5,6 +5,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from porolub.errors import SolveError
+
 
 @contextmanager
 def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
@@ -18,12 +20,12 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
     try:
         yield temporary
         for path in temporary:
-            _to_disk(path)
+            to_disk(path)
         for target in targets[1:]:
             target.unlink(missing_ok=True)
         for path, target in zip(temporary, targets, strict=True):
             path.replace(target)
-        _to_disk(targets[0].parent)
+        to_disk(targets[0].parent)
     finally:
         for path in temporary:
             path.unlink(missing_ok=True)
@@ -35,7 +37,17 @@ def write_text(path: Path, text: str) -> None:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
-def _to_disk(path: Path) -> None:
+@contextmanager
+def reported(path: Path, what: str = "this file") -> Iterator[None]:
+    """Turn an OSError into a SolveError: the scene is not to blame for a full disk."""
+    try:
+        yield
+    except OSError as error:
+        reason = error.strerror or error
+        raise SolveError(f"{path}: {what} cannot be written ({reason}).") from error
+
+
+def to_disk(path: Path) -> None:
     """Make what was written (for a directory: its entries) survive a loss of power."""
     descriptor = os.open(path, os.O_RDONLY)
     try:

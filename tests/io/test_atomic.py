@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from porolub.io.atomic import replacing, write_text
+from porolub.errors import SolveError
+from porolub.io.atomic import replacing, reported, write_text
 
 
 def test_new_text_replaces_old(tmp_path: Path) -> None:
@@ -73,3 +74,15 @@ def test_old_index_and_new_data_never_stand_together(
         assert not index.exists() or index.read_text() == data.read_text()
         assert not list(tmp_path.glob(".*"))
     assert index.read_text() == "new"
+
+
+def test_an_error_of_the_disk_is_one_sentence(tmp_path: Path) -> None:
+    path = tmp_path / "a.txt"
+    with pytest.raises(SolveError) as caught, reported(path):
+        raise OSError(28, "No space left on device")
+    assert str(caught.value) == f"{path}: this file cannot be written (No space left on device)."
+    with pytest.raises(SolveError) as caught, reported(path, "the results"):
+        raise OSError("odd")
+    assert str(caught.value) == f"{path}: the results cannot be written (odd)."
+    with pytest.raises(KeyError), reported(path):
+        raise KeyError
