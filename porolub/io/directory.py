@@ -1,19 +1,38 @@
-"""The output directory as a whole."""
+"""The output directory as a whole: what lies where, and what goes when a new run begins.
+
+A run of many steps begins with begin_run, adds to history.csv, frames and checkpoint.h5 as it goes
+(HistoryWriter, FrameWriter, write_checkpoint) and ends with write_results; a steady run needs the
+last only.
+"""
 
 import os
 from pathlib import Path
 
 from porolub.errors import SceneError
-from porolub.io.atomic import replacing, write_text
+from porolub.io.atomic import replacing, reported, write_text
 from porolub.io.checkpoint import write_checkpoint
 from porolub.io.fields import write_fields
+from porolub.io.frames import remove_frames
 from porolub.io.history import write_history
 from porolub.io.summary import write_summary
 from porolub.io.surface import write_surface
 from porolub.scene import Scene, write_resolved
-from porolub.solve.report import Report
+from porolub.solve.report import Report, Resume
 
+SUMMARY = "summary.json"
+HISTORY = "history.csv"
+CHECKPOINT = "checkpoint.h5"
+SURFACE = "surface.csv"
+SCENE = "scene.resolved.toml"
+OPTIONS = "petsc.options"
 PLOTS = ("von_mises.png", "pressure.png", "surface.png", "flow.png")
+"""Pictures of the last state."""
+HISTORY_PLOTS = ("loads.png", "flows.png", "friction.png", "lengths.png")
+"""Pictures of how it came about."""
+ANIMATION = "animation.gif"
+
+_PICTURES = (*PLOTS, *HISTORY_PLOTS, ANIMATION)
+_FIELDS = ("fields.xdmf", "fields.h5")  # the description goes before what it describes
 
 
 def prepare_directory(directory: Path) -> None:
@@ -30,36 +49,89 @@ def prepare_directory(directory: Path) -> None:
         raise SceneError(f"{directory}: you may not write into this directory.")
 
 
-def write_results(
-    directory: Path, report: Report, scene: Scene, petsc_options: str = "", *, plots: bool = True
-) -> None:
-    """Write all results of a run but log.txt, which grows as the run goes (setup_logging).
+def begin_run(
+    directory: Path, scene: Scene, petsc_options: str = "", *, resume: bool = False
+) -> str:
+    """Make the directory ready for a run of many steps and return the resolved scene as TOML.
 
-    ``petsc_options``: text of petsc.options, as PETSc reads it. Each file is replaced as a whole.
-    An earlier run's summary.json and what the new run has no data for are taken away first and
-    summary.json comes after all data, so a directory that has one is complete. Raises SceneError
-    where the directory cannot be written.
+    What restart needs but a checkpoint is there from now on: scene.resolved.toml and petsc.options
+    (``petsc_options`` as PETSc reads them). All of an earlier run is taken away; with ``resume``
+    only its summary and pictures, for that run goes on. Raises SceneError where the directory
+    cannot be written.
     """
     prepare_directory(directory)
     try:
-        stale = ["summary.json", *PLOTS] + ["surface.csv"] * (report.surface is None)
-        for name in stale:
-            (directory / name).unlink(missing_ok=True)
-        with replacing(directory / "scene.resolved.toml") as (temporary,):
-            write_resolved(scene, temporary)
-        write_text(directory / "petsc.options", petsc_options.rstrip("\n") + "\n")
-        write_fields(directory, report.fields, report.history[-1].time if report.history else 0.0)
+        _remove(directory, SUMMARY, *_PICTURES)
+        if not resume:
+            _remove(directory, CHECKPOINT, HISTORY, SURFACE, *_FIELDS)
+            remove_frames(directory)
+        return _write_input(directory, scene, petsc_options)
+    except OSError as error:
+        reason = error.strerror or error
+        raise SceneError(f"{directory}: a run cannot write its files here ({reason}).") from error
+
+
+def write_results(
+    directory: Path,
+    report: Report,
+    scene: Scene,
+    petsc_options: str = "",
+    *,
+    plots: bool = True,
+    history_written: bool = False,
+) -> None:
+    """Write all results of a run but log.txt, which grows as the run goes (setup_logging).
+
+    ``petsc_options``: text of petsc.options, as PETSc reads it. ``history_written``: history.csv,
+    checkpoint.h5 and frames were written as the run went and stay as they are. Each file is
+    replaced as a whole. An earlier run's summary.json and what the new run has no data for are
+    taken away first and summary.json comes after all data, so a directory that has one is
+    complete. Raises SceneError where there can be no such directory and SolveError where a file
+    cannot be written.
+    """
+    prepare_directory(directory)
+    with reported(directory, "the results"):
+        _remove(directory, SUMMARY, *_PICTURES)
+        if report.surface is None:
+            _remove(directory, SURFACE)
+        toml = _write_input(directory, scene, petsc_options)
+        write_fields(directory, report.fields, _time(report))
         if report.surface is not None:
-            write_surface(directory / "surface.csv", report.surface)
-        if report.state is not None:
-            text = (directory / "scene.resolved.toml").read_text(encoding="utf-8")
-            write_checkpoint(directory / "checkpoint.h5", report.state, scene, text)
-        write_history(directory / "history.csv", report.history)
-        write_summary(directory / "summary.json", report.summary)
+            write_surface(directory / SURFACE, report.surface)
+        if not history_written:
+            _write_only_state(directory, report, scene, toml)
+        write_summary(directory / SUMMARY, report.summary)
         if plots:
             from porolub.io.plots import plot_directory  # matplotlib takes a while to import
 
             plot_directory(directory)
-    except OSError as error:
-        reason = error.strerror or error
-        raise SceneError(f"{directory}: the results cannot be written ({reason}).") from error
+
+
+def _write_input(directory: Path, scene: Scene, petsc_options: str) -> str:
+    with replacing(directory / SCENE) as (temporary,):
+        write_resolved(scene, temporary)
+    write_text(directory / OPTIONS, petsc_options.rstrip("\n") + "\n")
+    return (directory / SCENE).read_text(encoding="utf-8")
+
+
+def _write_only_state(directory: Path, report: Report, scene: Scene, toml: str) -> None:
+    """Checkpoint and history of a steady run, whose state no time step led to."""
+    remove_frames(directory)
+    _remove(directory, CHECKPOINT)
+    if report.state is not None:
+        resume = Resume(states=(report.state,), orders=(0,), step=0.0)
+        write_checkpoint(directory / CHECKPOINT, resume, toml, scene.digest())
+    write_history(directory / HISTORY, report.history)
+
+
+def _time(report: Report) -> float:
+    if report.state is not None:
+        return report.state.time
+    return report.history[-1].time if report.history else 0.0
+
+
+def _remove(directory: Path, *names: str) -> None:
+    """Take away what there is of these files, and what a killed write left of them."""
+    for name in names:
+        (directory / name).unlink(missing_ok=True)
+        (directory / f".{name}.tmp").unlink(missing_ok=True)

@@ -8,7 +8,7 @@ import meshio
 import numpy as np
 import pytest
 
-from porolub.io.checkpoint import read_checkpoint
+from porolub.io.checkpoint import read_checkpoint, read_digest
 from porolub.io.summary import KEYS
 from porolub.scene import estimate_unknowns, load_scene
 from tests.run.output import Output
@@ -77,8 +77,10 @@ def test_fields_are_read_by_others(case1: Output) -> None:
 
 
 def test_the_checkpoint_holds_the_same_state(case1: Output) -> None:
-    state, digest = read_checkpoint(case1.directory / "checkpoint.h5")
-    assert digest == case1.scene.digest()
+    resume, tables = read_checkpoint(case1.directory / "checkpoint.h5")
+    (state,) = resume.states
+    assert tables == case1.scene.resolved()
+    assert read_digest(case1.directory / "checkpoint.h5") == case1.scene.digest()
     np.testing.assert_array_equal(state.mesh_nodes, case1.fields.nodes)
     nodes, values = state.fields["u"]
     np.testing.assert_allclose(values, case1.fields.displacement[nodes], atol=1e-18)
