@@ -57,7 +57,8 @@ class Curve:
             period = self.last - self.first
             t = np.concatenate((t[:-1] - period, t, t[1:] + period))
             value = np.concatenate((value[:-1], value, value[1:]))
-        cubic: Callable[[float], float] = PchipInterpolator(t, value)
+        with np.errstate(over="ignore"):  # values that differ by next to nothing: slope 0
+            cubic: Callable[[float], float] = PchipInterpolator(t, value)
         return cubic
 
     def _line_corners(self) -> list[float]:
