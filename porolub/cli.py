@@ -33,6 +33,9 @@ Overrides = Annotated[
     ),
 ]
 
+Petsc = Annotated[str, typer.Option("--petsc", metavar="OPTIONS", help="Options handed to PETSc.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="No progress, no result table.")]
+
 
 def rank_and_size() -> tuple[int, int]:
     """Return this process's MPI rank and their number, from the launcher, without starting MPI."""
@@ -108,24 +111,33 @@ def run(
         typer.Option("--out", metavar="DIR", help="If not given: results/<scene file name>."),
     ] = None,
     overrides: Overrides = None,
-    petsc: Annotated[
-        str, typer.Option("--petsc", metavar="OPTIONS", help="Options handed to PETSc.")
-    ] = "",
-    quiet: Annotated[bool, typer.Option("--quiet", help="No progress, no result table.")] = False,
+    petsc: Petsc = "",
+    quiet: Quiet = False,
 ) -> None:
     """Compute a scene and write the results."""
     from porolub.scene import load_scene
 
     checked = load_scene(scene, overrides or ())
-    if checked.time is not None:
-        raise SceneError(
-            "transient scenes are not supported by this version: remove [time] to compute the "
-            "steady state (--set time=none)."
-        )
     from porolub.run import run_scene
 
     out_dir = out if out is not None else Path("results") / scene.stem
-    raise typer.Exit(run_scene(checked, out_dir, petsc, quiet, scene))
+    raise typer.Exit(run_scene(checked, out_dir, petsc, quiet))
+
+
+@app.command()
+def restart(
+    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Output directory of a run.")],
+    overrides: Overrides = None,
+    petsc: Petsc = "",
+    quiet: Quiet = False,
+) -> None:
+    """Go on with a transient run from its checkpoint, on any number of ranks.
+
+    --set may change how far and how finely it goes: time.end, time.tolerance and the like.
+    """
+    from porolub.run_transient import restart as go_on
+
+    raise typer.Exit(go_on(directory, overrides or (), petsc, quiet))
 
 
 @app.command()
@@ -142,14 +154,27 @@ def check(scene: SceneFile, overrides: Overrides = None) -> None:
 @app.command()
 def plot(
     directory: Annotated[Path, typer.Argument(metavar="DIR", help="Output directory of a run.")],
+    period: Annotated[
+        int | None,
+        typer.Option(
+            "--period", metavar="N", min=1, help="Which period; if not given, the last full one."
+        ),
+    ] = None,
+    animate: Annotated[
+        bool, typer.Option("--animate", help="Write animation.gif of the period, too.")
+    ] = False,
 ) -> None:
-    """Draw the figures of a finished run."""
+    """Draw the figures of a run."""
     if not directory.is_dir():
         raise SceneError(f"{directory}: there is no such directory.")
     from porolub.io.plots import plot_directory
 
-    for path in plot_directory(directory):
+    for path in plot_directory(directory, period):
         print(path)
+    if animate:
+        from porolub.io.animation import animate_directory
+
+        print(animate_directory(directory, period))
 
 
 @app.command()

@@ -12,6 +12,8 @@ from typing import Any, Self
 
 from mpi4py import MPI
 
+from porolub.errors import Interrupted
+
 CAUGHT = (signal.SIGINT, signal.SIGTERM)
 
 
@@ -39,4 +41,13 @@ class Interrupt:
     def asked(self, comm: Any) -> str:
         """Which signal any rank of ``comm`` has got, in words; empty for none. Collective."""
         number = comm.allreduce(self._number, op=MPI.MAX)
-        return f"interrupted by {signal.Signals(number).name}" if number else ""
+        return f"Interrupted by {signal.Signals(number).name}" if number else ""
+
+    def raise_if_asked(self, comm: Any) -> str:
+        """Raise Interrupted on all ranks of ``comm`` once a signal has come; else "". Collective.
+
+        For work that leaves nothing worth keeping.
+        """
+        if self.asked(comm):
+            raise Interrupted(f"{self.asked(comm)} before there was a state to keep.")
+        return ""

@@ -21,8 +21,11 @@ ALLOWED = {
     "io": (*BELOW, "errors", ""),
     "study": (*BELOW, "errors", "io", "run", ""),
     "versions": ("",),
-    "run": (*BELOW, "errors", "io", "versions", ""),
-    "cli": (*BELOW, "errors", "io", "study", "run", "versions", ""),
+    "interrupt": ("errors",),
+    "finish": (*BELOW, "errors", "io", "versions", ""),
+    "run_transient": (*BELOW, "errors", "io", "interrupt", "finish"),
+    "run": (*BELOW, "errors", "io", "interrupt", "finish", "run_transient"),
+    "cli": (*BELOW, "errors", "io", "study", "run", "run_transient", "versions", ""),
     "__main__": ("cli",),
     "": (),  # porolub/__init__.py
 }

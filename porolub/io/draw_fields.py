@@ -45,8 +45,8 @@ def draw_field(
     figure, (ax,) = new_figure(f"{name[0].upper()}{name[1:]} in the deformed layer ({title})")
     colours = ax.tripcolor(Triangulation(x, y, cells), factor * values, shading="gouraud")
     colours.set_rasterized(True)
-    outline = np.stack([x, y], axis=1)[_outline(cells)]
-    ax.add_collection(LineCollection(outline, colors=GREY, linewidths=0.8))
+    edges = np.stack([x, y], axis=1)[outline(cells)]
+    ax.add_collection(LineCollection(edges, colors=GREY, linewidths=0.8))
     if plane is not None:
         ax.axhline(y_factor * plane, color="black", linewidth=1.2)
         ax.annotate(
@@ -64,8 +64,8 @@ def draw_field(
     return figure
 
 
-def _outline(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Edges (n, 2) that belong to one triangle only."""
+def outline(triangles: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the edges (n, 2) that belong to one triangle only."""
     edges = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
     unique, count = np.unique(edges, axis=0, return_counts=True)
     outer: NDArray[np.int64] = unique[count == 1]

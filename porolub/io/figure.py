@@ -1,5 +1,6 @@
 """One look for all figures: 1200 x 700 pixels, colours told apart by everybody."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from textwrap import shorten
 from typing import Any
@@ -16,14 +17,16 @@ CONTACT_ZONE = "#E6E6E6"
 _FONT = 13
 
 
-def new_figure(title: str, rows: int = 1, legend: bool = False) -> tuple[Figure, list[Axes]]:
+def new_figure(
+    title: str, rows: int = 1, legend: bool = False, heights: Sequence[float] | None = None
+) -> tuple[Figure, list[Axes]]:
     """Return a figure with ``rows`` axes below each other that share x, without pyplot.
 
-    legend: leave room for one between the title and the axes.
+    legend: leave room for one between the title and the axes; heights: of the rows, relative.
     """
     figure = Figure(figsize=(12, 7), dpi=100, layout="constrained")
     FigureCanvasAgg(figure)
-    grid = figure.subplots(rows, 1, sharex=True, squeeze=False)
+    grid = figure.subplots(rows, 1, sharex=True, squeeze=False, height_ratios=heights)
     axes = list(grid[:, 0])
     axes[0].set_title(
         shorten(title, 100, placeholder=" ..."),

@@ -11,11 +11,12 @@ ROOT = "porolub"
 _installed: list[logging.Handler] = []
 
 
-def setup_logging(directory: Path | None, level: int = logging.INFO) -> None:
+def setup_logging(directory: Path | None, level: int = logging.INFO, *,
+                  resume: bool = False) -> None:
     """Send the log to log.txt in ``directory``, which is made if need be; end any earlier log.
 
-    With None, as on all ranks but the first, nothing is logged. Raises SceneError if the
-    directory or the file cannot be written.
+    ``resume``: go on in an earlier log. With None, as on all ranks but the first, nothing is
+    logged. Raises SceneError if the directory or the file cannot be written.
     """
     close_logging()
     handler: logging.Handler = logging.NullHandler()
@@ -23,7 +24,7 @@ def setup_logging(directory: Path | None, level: int = logging.INFO) -> None:
         prepare_directory(directory)
         path = directory / "log.txt"
         try:
-            handler = logging.FileHandler(path, mode="w", encoding="utf-8")
+            handler = logging.FileHandler(path, mode="a" if resume else "w", encoding="utf-8")
         except OSError as error:
             raise SceneError(f"{path}: the log cannot be written ({error.strerror}).") from error
         handler.setFormatter(logging.Formatter(FORMAT))

@@ -1,4 +1,4 @@
-"""The figures of a finished run, drawn from its output directory alone."""
+"""The figures of a run, drawn from its output directory alone."""
 
 from pathlib import Path
 
@@ -6,29 +6,45 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from porolub.errors import SceneError
-from porolub.io.directory import PLOTS
+from porolub.io.directory import HISTORY, HISTORY_PLOTS, PLOTS, SUMMARY, SURFACE
 from porolub.io.draw_fields import can_draw, draw_field
+from porolub.io.draw_history import draw_history
 from porolub.io.draw_surface import draw_flows, draw_pressures
 from porolub.io.fields import read_fields
 from porolub.io.figure import save
+from porolub.io.history import read_history
+from porolub.io.period import History
 from porolub.io.summary import number, read_summary
 from porolub.io.surface import read_surface
+from porolub.io.time_axis import Course
 from porolub.scene import Scene, load_scene
 from porolub.scene.geometry import Arc, Block
 
 
-def plot_directory(directory: Path) -> list[Path]:
+def plot_directory(directory: Path, period: int | None = None) -> list[Path]:
     """Draw what the run has data for and return the pictures' paths.
 
     von_mises.png, pressure.png (two dimensions), surface.png, flow.png: Figures 4, 5, 6a and 6b
-    of the paper. Pictures there is no data for are taken away. Raises SceneError where the
-    directory is missing, damaged, not writable or not the output of a finished run.
+    of the paper; loads.png, flows.png, friction.png, lengths.png: Figures 8a to 8d, over a period
+    (from 1; the last full one if not given) or the whole run where nothing is periodic. A transient
+    run that has not finished has the latter. Pictures there is no data for are taken away. Raises
+    SceneError where the directory is missing, damaged, not writable or not the output of a run, or
+    does not have that period.
     """
     if not directory.is_dir():
         raise SceneError(f"{directory}: there is no such directory.")
-    figures = _figures(directory)
+    scene = read_scene(directory)
+    title = scene.title if scene else directory.name
+    history = history_of(directory)
+    figures = {}
+    if history is None or (directory / SUMMARY).exists():
+        figures = _figures_at_the_end(directory, scene, title)
+    if history is not None:
+        figures |= draw_history(Course.of(history, scene, period), title)
+    elif period is not None:
+        raise SceneError(f"--period: {directory} has no history of several steps to choose from.")
     try:
-        for name in PLOTS:
+        for name in (*PLOTS, *HISTORY_PLOTS):
             if name not in figures:
                 (directory / name).unlink(missing_ok=True)
         return [save(figure, directory / name) for name, figure in figures.items()]
@@ -37,12 +53,17 @@ def plot_directory(directory: Path) -> list[Path]:
         raise SceneError(f"{directory}: the figures cannot be written ({reason}).") from error
 
 
-def _figures(directory: Path) -> dict[str, Figure]:
-    """The figures by file name."""
-    summary, fields = read_summary(directory / "summary.json"), read_fields(directory)
-    scene = _scene(directory)
-    title = scene.title if scene else directory.name
-    plane = _plane(scene, number(summary, "approach"))
+def history_of(directory: Path) -> History | None:
+    """Return the columns of history.csv; None where there are not two steps or more."""
+    path = directory / HISTORY
+    history = read_history(path) if path.exists() else {}
+    return history if len(history.get("time", ())) > 1 else None
+
+
+def _figures_at_the_end(directory: Path, scene: Scene | None, title: str) -> dict[str, Figure]:
+    """The figures of the last state by file name."""
+    summary, fields = read_summary(directory / SUMMARY), read_fields(directory)
+    plane = plane_height(scene, number(summary, "approach"))
     figures = {}
     if can_draw(fields):
         drawn = {"von_mises.png": ("von Mises stress", fields.von_mises)}
@@ -51,24 +72,24 @@ def _figures(directory: Path) -> dict[str, Figure]:
         for name, (words, values) in drawn.items():
             if np.any(values):
                 figures[name] = draw_field(fields, values, words, title, plane)
-    if (directory / "surface.csv").exists():
-        surface = read_surface(directory / "surface.csv")
+    if (directory / SURFACE).exists():
+        surface = read_surface(directory / SURFACE)
         figures["surface.png"] = draw_pressures(surface, title)
         if surface.Q.any() or surface.V.any():
             figures["flow.png"] = draw_flows(surface, title)
     return figures
 
 
-def _scene(directory: Path) -> Scene | None:
-    """The scene of the run; None where it cannot be read any more (a mesh file may be gone)."""
+def read_scene(directory: Path) -> Scene | None:
+    """Return the scene of a run; None where it cannot be read (a mesh file may be gone)."""
     try:
         return load_scene(directory / "scene.resolved.toml")
     except SceneError:
         return None
 
 
-def _plane(scene: Scene | None, approach: float | None) -> float | None:
-    """Height of the rigid plane in m, where the shape says on which side it is."""
+def plane_height(scene: Scene | None, approach: float | None) -> float | None:
+    """Return the height of the rigid plane in m, where the shape says on which side it is."""
     if scene is None or approach is None:
         return None
     if isinstance(scene.geometry, Arc):

@@ -81,9 +81,8 @@ class Progress:
         self._status()
 
     def step(self, record: StepRecord) -> None:
-        """A time step was accepted; ``begin`` has been called."""
-        assert self._steps is not None
-        if self._idle():
+        """A time step was accepted; the state at the start, before ``begin``, is none."""
+        if self._steps is None or self._idle():
             return
         self._steps.step(record, time.monotonic())
         header = self._step_lines.header()
@@ -93,8 +92,9 @@ class Progress:
         self._status()
 
     def rejected(self, time: float, step: float, why: str) -> None:
-        """A step of ``step`` s from ``time`` s was not accepted; ``begin`` has been called."""
-        assert self._steps is not None
+        """A step of ``step`` s from ``time`` s was not accepted; why in a sentence."""
+        if self._steps is None or self._idle():
+            return
         self._steps.rejected += 1
         self._steps.iteration = None
         self._lines.restart()

@@ -23,7 +23,7 @@ from porolub.solve.model import Model
 from porolub.terms.film import Film
 
 Array = NDArray[np.float64]
-BULK = {"pores", "carry", "streamline stabilisation", "storage", "compressibility of the pores"}
+BULK = {"pores", "carry", "streamline stabilisation", "storage", "compressible pores"}
 
 
 class Derived:

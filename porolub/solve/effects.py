@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from porolub.laws.fluid import CompressibleFluid
 from porolub.laws.lubricant import Newtonian
 from porolub.laws.solid import LinearElastic, NeoHookean
 from porolub.scene.conditions import Traction as Components
@@ -14,9 +15,11 @@ from porolub.scene.history import value_at
 from porolub.solve.scales import Scales
 from porolub.solve.surface import LubricatedSurface
 from porolub.terms.carry import Carry
+from porolub.terms.compressibility import CompressibleFilm, CompressiblePores
 from porolub.terms.contact import Contact
 from porolub.terms.drainage import Drainage
 from porolub.terms.film import Film
+from porolub.terms.inertia import Inertia
 from porolub.terms.load import LoadBalance
 from porolub.terms.operation import Operation
 from porolub.terms.pores import Pores
@@ -55,6 +58,11 @@ def mobility_of(scene: Any, scales: Scales) -> float:
     return scene.pores.permeability / scene.pores.viscosity / scales.mobility
 
 
+def compressible(scene: Any, scales: Scales) -> CompressibleFluid:
+    """The law of a fluid with a compressibility, scaled."""
+    return CompressibleFluid(scene.pores.compressibility * scales.pressure)
+
+
 def body_terms(scene: Any, law: Law | None, scales: Scales, operation: Operation,
                boundaries: tuple[str, ...]) -> list[Term]:
     """Skeleton, pores, carry and the tractions on named boundaries."""
@@ -62,17 +70,24 @@ def body_terms(scene: Any, law: Law | None, scales: Scales, operation: Operation
     mesh = scene.mesh
     if law is not None:
         terms.append(Skeleton(law, scales.dim, mesh.degree))
+        if scene.solid.inertia and scene.time is not None:
+            terms.append(Inertia(scene.solid.density / scales.density, scales.dim, mesh.degree))
     if scene.pores is not None and law is not None:
         a, mobility = scene.pores.biot, mobility_of(scene, scales)
         spatial = scene.conventions.frame == "spatial"
-        terms.append(Pores(a, mobility, spatial, mesh.pressure_degree))
-        terms.append(Storage(a, scene.pores.storage * scales.pressure))
+        pores = Pores(a, mobility, spatial, mesh.pressure_degree)
+        storage = Storage(a, scene.pores.storage * scales.pressure)
+        terms += [pores, storage]
+        carry = None
         if scene.pores.carry:
             ends = tuple(e for e in ("inlet", "outlet") if e in boundaries)
             fresh = scene.conventions.entering == "fresh"
-            terms.append(Carry(a, operation, ends, fresh))
+            carry = Carry(a, operation, ends, fresh)
             capacity = a**2 / law.constrained_modulus
-            terms.append(Streamline(a, capacity, mobility, operation, mesh.pressure_degree))
+            terms += [carry, Streamline(a, capacity, mobility, operation, mesh.pressure_degree)]
+        if scene.pores.compressibility is not None:
+            fluid = compressible(scene, scales)
+            terms.append(CompressiblePores(fluid, scene.pores.porosity, pores, storage, carry))
     for name, condition in scene.boundary.items():
         if condition.traction is not None:
             terms.append(_traction(name, condition.traction, scales, operation))
@@ -96,9 +111,12 @@ def surface_terms(scene: Any, law: Law | None, scales: Scales, operation: Operat
                               film.shear_film_min / scales.length)
         leak = SEALED_FILM / scales.length if pores is None and contact is not None else 0.0
         softness = (law.constrained_modulus, mobility_of(scene, scales)) if law else None
-        terms.append(Film(lubricant, plane, operation, name, solid, force, mesh.pressure_degree,
-                          alone=pores is None, upwind=softness, leak=leak))
-        terms.append(Squeeze(plane, name, solid, force))
+        flow = Film(lubricant, plane, operation, name, solid, force, mesh.pressure_degree,
+                    alone=pores is None, upwind=softness, leak=leak)
+        squeeze = Squeeze(plane, name, solid, force) if scene.time is None or film.squeeze else None
+        terms += [flow] if squeeze is None else [flow, squeeze]
+        if pores is not None and pores.compressibility is not None:
+            terms.append(CompressibleFilm(compressible(scene, scales), flow, squeeze))
     if contact is not None:
         friction = contact.friction if contact.friction_traction else 0.0
         terms.append(Contact(plane, operation, name, CONTACT_STIFFNESS, friction, force,

@@ -26,12 +26,12 @@ DIVERGED = PETSc.SNES.ConvergedReason.DIVERGED_FUNCTION_DOMAIN
 TOO_MANY = PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
 
 # Largest plausible update of one iteration, in thicknesses and moduli.
-LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03, "j": np.inf}
+LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03, "j": np.inf, "w": np.inf}
 SHORT = 0.4  # a step cut below this counts as strongly shortened
 UNDETERMINED = 1e9  # an update of this size, scaled, comes from a singular matrix
 NAMES = {"u": ("displacement", "thicknesses"), "p": ("fluid pressure", "layer moduli"),
          "l": ("contact pressure", "layer moduli"), "v0": ("approach", "thicknesses"),
-         "j": ("volume change", "of the volume")}
+         "j": ("volume change", "of the volume"), "w": ("velocity", "thicknesses per unit time")}
 
 
 @dataclass

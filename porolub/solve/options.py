@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import difflib
+from typing import Any
 
 from petsc4py import PETSc
 
@@ -19,8 +20,16 @@ DIRECT: dict[str, str] = {
 }
 """MUMPS on the whole matrix: the fastest in 2D up to some 300,000 unknowns."""
 
-KNOWN = (*DIRECT, "snes_monitor", "snes_view", "snes_converged_reason", "ksp_monitor", "ksp_rtol",
-         "ksp_view", "ksp_converged_reason", "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7",
+STEPS: dict[str, str] = {
+    "ts_adapt_type": "basic",  # the next step from the last error alone: exact after a restart
+    "ts_adapt_safety": "0.63",  # cube root of AIM in solve/stepping.py: what a step aims at
+    "ts_adapt_scale_solve_failed": "0.25",  # a step Newton cannot do is tried at a quarter
+}
+"""Choice of time steps by TS."""
+
+KNOWN = (*DIRECT, *STEPS, "ts_monitor", "ts_view", "ts_adapt_monitor",
+         "snes_monitor", "snes_view", "snes_converged_reason", "ksp_monitor",
+         "ksp_rtol", "ksp_view", "ksp_converged_reason", "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7",
          "options_left")
 
 
@@ -41,10 +50,24 @@ def set_options(text: str) -> list[str]:
                          "--petsc \"-snes_monitor\".")
     options = PETSc.Options()
     options.insertString(text)
-    for key, value in DIRECT.items():
+    for key, value in (DIRECT | STEPS).items():
         if not options.hasName(key):
             options.setValue(key, value)
     return names
+
+
+def refuse_unused_together(names: list[str], comm: Any) -> None:
+    """As ``refuse_unused`` on rank 0, which takes part in every solve; all ranks raise. Collective.
+    """
+    problem = None
+    if comm.rank == 0:
+        try:
+            refuse_unused(names)
+        except SceneError as error:
+            problem = str(error)
+    problem = comm.bcast(problem)
+    if problem is not None:
+        raise SceneError(problem)
 
 
 def refuse_unused(names: list[str]) -> None:

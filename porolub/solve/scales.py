@@ -28,6 +28,10 @@ class Scales:
         return self.pressure * self.length ** (self.dim - 1)
 
     @property
+    def density(self) -> float:
+        return self.pressure * self.time**2 / self.length**2
+
+    @property
     def viscosity(self) -> float:
         return self.pressure * self.time
 

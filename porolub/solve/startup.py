@@ -20,7 +20,7 @@ from porolub.solve.newton import Newton, NewtonResult
 
 PRESSED_IN = 0.05  # first guess of the approach for a straight start, thicknesses
 LIFTED = -0.01  # where the plane starts in the physical start-up
-STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3, "j": np.inf}
+STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3, "j": np.inf, "w": np.inf}
 PATIENCE = 2  # strongly shortened steps: a good guess converges at once or not at all
 SMALLEST_SHARE = 2e-3  # of load or friction, below which a ramp is given up
 

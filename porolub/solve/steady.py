@@ -18,12 +18,11 @@ import numpy as np
 from mpi4py import MPI
 from petsc4py import PETSc
 
-from porolub.errors import SceneError
 from porolub.mesh import build_mesh
 from porolub.solve.derived import Derived
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.newton import Clock, Newton, NewtonResult
-from porolub.solve.options import refuse_unused, set_options
+from porolub.solve.options import refuse_unused_together, set_options
 from porolub.solve.place import place_in_words
 from porolub.solve.report import NewtonRecord
 from porolub.solve.scales import Scales
@@ -87,6 +86,7 @@ class Outcome:
     edges: tuple[float, ...] = ()  # where the mesh was refined, mesh units
     status: str = ""  # converged | failed | interrupted; by default from ``converged``
     time_steps: int = 0
+    overall: dict[str, float] = field(default_factory=dict)  # what the summary says of all steps
 
     def __post_init__(self) -> None:
         self.status = self.status or ("converged" if self.converged else "failed")
@@ -146,7 +146,7 @@ class SteadySolver:
             self.newton_iterations += found.newton_iterations
             self.linear_iterations += found.linear_iterations
             self.rejected += found.rejected
-            self._refuse_unused_options()
+            refuse_unused_together(self._user_options, self.comm)
             failures += not found.result.converged
             if last or failures == FAILURES_ALLOWED:
                 if model is None:
@@ -194,18 +194,6 @@ class SteadySolver:
             raise found
         assert found is not None
         return found
-
-    def _refuse_unused_options(self) -> None:
-        """Raise SceneError on all ranks for an option of the user that PETSc has not read."""
-        problem = None
-        if self.comm.rank == 0:  # the one rank that takes part on every mesh
-            try:
-                refuse_unused(self._user_options)
-            except SceneError as error:
-                problem = str(error)
-        problem = self.comm.bcast(problem)
-        if problem is not None:
-            raise SceneError(problem)
 
     @cached_property
     def scales(self) -> Scales:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import logging
 import time as wall
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,63 +14,41 @@ from porolub.solve.balance import FluidBalance
 from porolub.solve.derived import Derived, scalars_of
 from porolub.solve.drive import drive
 from porolub.solve.gather import gather_fields, gather_surface
-from porolub.solve.model import Model
 from porolub.solve.newton import Newton
+from porolub.solve.options import refuse_unused_together
 from porolub.solve.periodic import difference_of_periods
 from porolub.solve.place import place_in_words
-from porolub.solve.report import FrameData, NewtonRecord, Resume, StepRecord
+from porolub.solve.report import FrameData, Resume, StepRecord
 from porolub.solve.resume import Gathered, owned_values
 from porolub.solve.startup import STEP_LIMIT
 from porolub.solve.steady import Outcome, SteadySolver
 from porolub.solve.stepping import Rejection, Step, TimeStepper
+from porolub.solve.watch import Totals, Watch
 
 log = logging.getLogger(__name__)
 FIRST = 1e-3  # of the period or the end: the first step from a steady state
 SUDDEN = 1e-6  # of the layer's own time and the end: within it a load from rest is put on
+EASY = 3.5  # Newton iterations that steps are to take on average, where Newton limits them
 AT_A_KINK = 0.1  # of the step before: the first step after a kink
 LIFTED = {True: -10e-6, False: 0.0}  # m; where the plane starts from rest with a film, without
 
 
-def _ignore(*_: Any) -> None:
-    """What nobody watches."""
+def ease(iterations: int) -> float:
+    """How much longer the next step may be, by how hard this one was for Newton.
+
+    Steps that take more than EASY iterations cost more than two shorter ones, which are also
+    more accurate and are rejected less.
+    """
+    return float(np.clip((EASY / max(iterations, 1)) ** 1.5, 0.5, 2.0))
 
 
-@dataclass(frozen=True)
-class Watch:
-    """Who is told what, on all ranks but with data on rank 0 only (None elsewhere)."""
-
-    newton: Callable[[NewtonRecord], None] = _ignore
-    stage: Callable[[str, float], None] = _ignore
-    begin: Callable[[float, float], None] = _ignore  # start, end (s)
-    step: Callable[[StepRecord], None] = _ignore
-    rejected: Callable[[float, float, str], None] = _ignore  # time, size (s), why
-    frame: Callable[[FrameData], None] = _ignore
-    checkpoint: Callable[[Callable[[], Resume | None]], None] = _ignore  # gathers when called
-
-
-@dataclass
-class Totals:
-    """Running sums; scaled where they are volumes."""
-
-    time_steps: int = 0
-    rejected_steps: int = 0
-    newton_iterations: int = 0
-    through: float = 0.0  # volume that has passed the boundaries or the surface
-    content_start: float = 0.0
-    content_swing: float = 0.0
-    load_error: float = 0.0
-    periods: int = 0
-
-    def mass_error(self, content: float, gained: float) -> float:
-        """What has appeared from nowhere since the start over what has moved."""
-        size = max(self.through, self.content_swing)
-        return abs(content - self.content_start - gained) / size if size > 0 else 0.0
+NOBODY = Watch()
 
 
 class TransientSolver:
     """Runs one scene with [time]; ``records`` holds a row per accepted step."""
 
-    def __init__(self, scene: Any, comm: Any, watch: Watch = Watch(),
+    def __init__(self, scene: Any, comm: Any, watch: Watch = NOBODY,
                  user_options: Sequence[str] = (),
                  stop: Callable[[Any], str] = lambda comm: "",
                  give_up: Callable[[Any], str] | None = None) -> None:
@@ -82,7 +59,9 @@ class TransientSolver:
         self.scene, self.comm, self.watch, self.stop = scene, comm, watch, stop
         self.records: list[StepRecord] = []
         self.totals = Totals()
-        self.steady = SteadySolver(scene, comm, watch.newton, watch.stage, user_options,
+        self._user_options = list(user_options)
+        of_newton = [name for name in user_options if not name.startswith("ts_")]
+        self.steady = SteadySolver(scene, comm, watch.newton, watch.stage, of_newton,
                                    give_up or stop)
         self.clock = self.steady.clock
         self._edges: tuple[float, ...] = ()
@@ -131,12 +110,16 @@ class TransientSolver:
         while stop - self.now > 1e-12 * stop:
             size = min(self._landing(self._next, stop - self.now), longest)
             step = self.stepper.step(size)
+            if self._user_options:
+                refuse_unused_together(self._user_options, self.comm)
+                self._user_options = []
             for rejection in step.rejected:
                 self._tell_rejected(rejection)
             if step.failed:
                 return self._failed(step)
             cut_short = size < self._next and not step.rejected
             self._next = max(self.stepper.next_size, self._next if cut_short else 0.0)
+            self._next = min(self._next, step.size * ease(step.last_iterations))
             self._accepted(step)
             why = self.stop(self.comm)
             if why:
@@ -327,8 +310,8 @@ class TransientSolver:
         fields = gather_fields(self.model, self.stepper.x)
         surface = gather_surface(self.model, self.stepper.x)
         number, self._frame = self._frame, int(now / apart * (1 + 1e-9)) + 1
-        if fields is not None:
-            self.watch.frame(FrameData(number, now, fields, surface))
+        frame = None if fields is None else FrameData(number, now, fields, surface)
+        self.watch.frame(frame)
 
     def _repeats(self) -> bool:
         """Whether the period that has just ended repeats the one before."""
@@ -374,4 +357,23 @@ class TransientSolver:
         return Outcome(done, message, self.model, self.stepper.x, [], t.newton_iterations,
                        newton.linear_iterations + self.steady.linear_iterations,
                        t.rejected_steps, self.clock, self._edges,
-                       status or ("converged" if done else "failed"), t.time_steps)
+                       status or ("converged" if done else "failed"), t.time_steps,
+                       self._overall())
+
+    def _overall(self) -> dict[str, float]:
+        """What the summary says of the whole run."""
+        if not self.records:
+            return {}
+        last, totals = self.records[-1].values, self.totals
+        found = {"time": self.records[-1].time}
+        if "load_balance_error" in last:
+            found["load_balance_error"] = totals.load_error
+        if "fluid_content" in last:
+            s = self.model.scales
+            mass = s.volume_flow * s.time * self.scene.fluid_density
+            appeared = abs(last["fluid_content"] - last["fluid_gained"]) / mass
+            moved = max(totals.through, totals.content_swing)
+            found["mass_balance_error"] = appeared / moved if moved > 0 else 0.0
+        if self.scene.period is not None:
+            found["periods"] = float(int(found["time"] / self.scene.period * (1 + 1e-9)))
+        return found

@@ -1,0 +1,104 @@
+"""How a run ends: report, files, table, comparison, and the error it ends with."""
+
+from __future__ import annotations
+
+import resource
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from mpi4py import MPI
+from rich.console import Console
+
+from porolub.errors import Interrupted, SolveError
+from porolub.io.directory import HISTORY, write_results
+from porolub.io.history import read_history
+from porolub.io.history_table import print_history_table
+from porolub.io.printed import printed_for
+from porolub.io.table import print_comparison, print_results
+from porolub.scene import effects
+from porolub.solve.derived import scalars
+from porolub.solve.gather import gather_fields, gather_state, gather_surface
+from porolub.solve.report import Report, StepRecord
+from porolub.solve.steady import Outcome
+from porolub.versions import versions
+
+FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach", "j": "volume_change",
+               "w": "velocity"}
+
+
+def finish(scene: Any, outcome: Outcome, out_dir: Path, quiet: bool) -> None:
+    """Write and show the results. Collective. Raises SolveError if the solve failed, Interrupted
+    if it was interrupted."""
+    report = make_report(scene, outcome)
+    transient = scene.time is not None
+    interrupted = outcome.status == "interrupted"
+    start = time.perf_counter()
+    if report is not None:
+        write_results(out_dir, report, scene, options_used(), plots=not interrupted,
+                      history_written=transient)
+    outcome.clock.add("output", start)
+    if report is not None and not quiet and not interrupted:
+        _show(report, scene, out_dir)
+    if interrupted:
+        raise Interrupted(f"{outcome.message} at t = {outcome.overall['time']:.6g} s; porolub "
+                          f"restart {out_dir} goes on from there.")
+    if not outcome.converged:
+        raise SolveError(f"{outcome.message} What was computed is in {out_dir}.")
+
+
+def options_used() -> str:
+    """Every option of porolub's solver in force, one a line, as PETSc reads them."""
+    from petsc4py import PETSc
+
+    return "\n".join(f"-{k} {v}" for k, v in sorted(PETSc.Options().getAll().items()))
+
+
+def make_report(scene: Any, outcome: Outcome) -> Report | None:
+    """Summary, fields and profiles of an outcome on rank 0, None elsewhere. Collective."""
+    model, x = outcome.model, outcome.x
+    start = time.perf_counter()
+    values = scalars(model, x)
+    fields = gather_fields(model, x)
+    surface = gather_surface(model, x)
+    state = gather_state(model, x)
+    outcome.clock.add("output", start)
+    counts = _counts(model)
+    comm = model.mesh.comm
+    memory = comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
+    spent = {k: comm.allreduce(v, op=MPI.MAX) for k, v in outcome.clock.spent.items()}
+    if fields is None:
+        return None
+    summary: dict[str, Any] = {
+        "status": outcome.status, "message": outcome.message,
+        **values,
+        "von_mises_max": float(np.max(fields.von_mises)) if model.law is not None else None,
+        "jacobian_min": model.system.lowest_jacobian if model.law is not None else None,
+        "effects": effects(scene), "dofs": counts, "ranks": comm.size,
+        "newton_iterations": outcome.newton_iterations,
+        "linear_iterations": outcome.linear_iterations,
+        "time_steps": outcome.time_steps, "rejected_steps": outcome.rejected_steps,
+        "wall_time": {**spent, "total": outcome.clock.elapsed()},
+        "peak_memory": memory, "versions": versions(), **outcome.overall,
+    }
+    step = {k: v for k, v in values.items() if isinstance(v, float)}
+    return Report(summary, fields, surface, outcome.newton, [StepRecord(0.0, step)], state)
+
+
+def _counts(model: Any) -> dict[str, int]:
+    names = dict(FIELD_NAMES)
+    names["p"] = "pore_pressure" if model.scene.pores is not None else "film_pressure"
+    counts = {names.get(k, k): v for k, v in model.dofs.counts().items()}
+    return {**counts, "total": sum(counts.values())}
+
+
+def _show(report: Report, scene: Any, out_dir: Path) -> None:
+    console = Console()
+    print_results(console, report.summary, scene)
+    if scene.time is not None:
+        print_history_table(console, read_history(out_dir / HISTORY), scene)
+    printed = printed_for(scene.title)
+    if printed is not None:
+        print_comparison(console, report.summary, printed, scene)
+    console.print(f"Results in [bold]{out_dir}[/bold]")

@@ -1,0 +1,143 @@
+"""The composition root of transient runs: scene or checkpoint -> steps -> files, as they come."""
+
+from __future__ import annotations
+
+import time as wall
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
+
+from porolub.errors import PorolubError, SceneError
+from porolub.finish import finish, options_used
+from porolub.interrupt import Interrupt
+from porolub.io.checkpoint import read_checkpoint, write_checkpoint
+from porolub.io.directory import CHECKPOINT, HISTORY, SCENE, begin_run
+from porolub.io.frames import FrameWriter
+from porolub.io.history import HistoryWriter, read_records
+from porolub.io.log import close_logging, setup_logging
+from porolub.io.progress import Progress
+from porolub.scene import load_scene
+from porolub.scene.compare import differences
+from porolub.solve.options import set_options
+from porolub.solve.report import FrameData, Resume, StepRecord
+from porolub.solve.transient import TransientSolver
+from porolub.solve.watch import Watch
+
+SPARINGLY = 20.0  # a checkpoint is due after so many times what the last one took
+
+
+def on_root(comm: Any, work: Callable[[], Any]) -> Any:
+    """Do something on rank 0 and return it on all; its errors are raised on all. Collective."""
+    result: Any = None
+    problem: PorolubError | None = None
+    if comm.rank == 0:
+        try:
+            result = work()
+        except PorolubError as error:
+            problem = error
+    result, problem = comm.bcast((result, problem), root=0)
+    if problem is not None:
+        raise problem
+    return result
+
+
+class Recorder:
+    """Writes what a run tells, as it comes: history.csv, frames, checkpoint.h5."""
+
+    def __init__(self, directory: Path, scene: Any, comm: Any, progress: Progress, toml: str,
+                 resume: Resume | None) -> None:
+        self.directory, self.comm, self.progress = directory, comm, progress
+        self.toml, self.digest = toml, scene.digest()
+        self._due = 0.0
+        if comm.rank == 0:
+            at = None if resume is None else resume.states[0].time
+            self.history = HistoryWriter(directory / HISTORY, at)
+            self.frames = FrameWriter(directory, 0 if resume is None else resume.frame)
+
+    def watch(self) -> Watch:
+        """The hooks of a TransientSolver."""
+        p = self.progress
+        return Watch(p.newton, p.stage, p.begin, self.step, p.rejected, self.frame,
+                     self.checkpoint)
+
+    def step(self, record: StepRecord) -> None:
+        on_root(self.comm, lambda: self.history.write(record))
+        self.progress.step(record)
+
+    def frame(self, frame: FrameData | None) -> None:
+        on_root(self.comm, lambda: self.frames.write(frame) if frame is not None else None)
+
+    def checkpoint(self, gather: Callable[[], Resume | None], now: bool = False) -> None:
+        """Write a checkpoint unless the last one is too recent for what it costs. Collective."""
+        start = wall.perf_counter()
+        if not self.comm.bcast(now or start >= self._due, root=0):
+            return
+        resume = gather()
+        on_root(self.comm, lambda: self._write(resume))
+        done = wall.perf_counter()
+        self._due = done + SPARINGLY * (done - start)
+
+    def _write(self, resume: Resume | None) -> None:
+        assert resume is not None  # rank 0
+        self.history.sync()
+        write_checkpoint(self.directory / CHECKPOINT, resume, self.toml, self.digest)
+
+
+def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = False,
+                  resume: Resume | None = None, resumed: bool = False) -> int:
+    """Run a scene with [time], from its start or from a checkpoint. Returns 0. Collective.
+
+    ``resumed`` on all ranks; the data of ``resume`` on rank 0. Errors as in ``run_scene``.
+    """
+    comm, out_dir = MPI.COMM_WORLD, Path(out_dir)
+    root = comm.rank == 0
+    user_options = set_options(petsc_options)
+    toml = on_root(comm, lambda: begin_run(out_dir, scene, options_used(), resume=resumed))
+    setup_logging(out_dir if root else None, resume=resumed)
+    try:
+        with Interrupt() as interrupt, Progress("quiet" if quiet or not root else "auto") as shown:
+            recorder = Recorder(out_dir, scene, comm, shown, toml, resume)
+            records = read_records(out_dir / HISTORY) if resume is not None else []
+            solver = TransientSolver(scene, comm, recorder.watch(), user_options,
+                                     interrupt.asked, interrupt.raise_if_asked)
+            outcome = solver.solve(resume, records, resumed)
+            if outcome.time_steps:
+                recorder.checkpoint(solver.resume, now=True)
+            finish(scene, outcome, out_dir, quiet)
+        return 0
+    finally:
+        close_logging()
+
+
+def restart(directory: Path, overrides: Any = (), petsc_options: str = "",
+            quiet: bool = False) -> int:
+    """Go on with the run in an output directory from its checkpoint. Returns 0. Collective.
+
+    ``overrides`` may change how far and how finely (porolub.scene.compare.MAY_CHANGE). Raises
+    SceneError for a directory without a checkpoint, or one of another scene (naming the keys).
+    """
+    comm, directory = MPI.COMM_WORLD, Path(directory)
+    resume: Resume | None = None
+
+    def read() -> tuple[Any, float]:
+        nonlocal resume
+        resume, before = read_checkpoint(directory / CHECKPOINT)
+        scene = load_scene(directory / SCENE, overrides)
+        if scene.time is None or len(resume.states) < 2:
+            raise SceneError(f"{directory}: this is a steady run, there is nothing to go on with.")
+        keys = differences(before, scene.resolved())
+        if keys:
+            raise SceneError(f"{directory / CHECKPOINT} belongs to a scene that differs in "
+                             f"{', '.join(keys)}; only how far and how finely a run goes may "
+                             "change (such as time.end): run the scene anew.")
+        return scene, resume.states[0].time
+
+    scene, reached = on_root(comm, read)
+    if reached >= scene.time.end * (1 - 1e-12):
+        if comm.rank == 0 and not quiet:
+            print(f"{directory}: the run has reached its end at t = {reached:g} s; "
+                  "--set time.end=... takes it further.")
+        return 0
+    return run_transient(scene, directory, petsc_options, quiet, resume, resumed=True)
