@@ -44,6 +44,7 @@ class Limits:
     happens: tuple[float, float] = (np.inf, -np.inf)
     pressure: tuple[float, float] = (0.0, -np.inf)
     film: tuple[float, float] = (np.inf, -np.inf)
+    wet: bool = False
     moves: Array | None = None
     """(nodes, 4) least and greatest x and y of each node."""
 
@@ -62,6 +63,7 @@ class Limits:
         self.happens = _wider(self.happens, surface.x[both > 0.02 * both.max(initial=0.0)])
         self.pressure = _wider(_wider(self.pressure, surface.p), surface.p_c)
         self.film = _wider(self.film, surface.h[surface.h > THINNEST])
+        self.wet |= bool(surface.p.any() or surface.Q.any())
 
     def box(self) -> tuple[float, float, float, float]:
         """Return where things happen: x from and to, y from and to, in m."""
@@ -178,16 +180,16 @@ class SurfacePanel:
         (self._contact,) = ax.plot(
             [], [], color=VERMILLION, lw=2, ls="--", label="contact pressure $p_c$"
         )
-        handles = [self._fluid, self._contact]
+        handles = [self._fluid, self._contact] if limits.wet else [self._contact]
+        self._fluid.set_visible(limits.wet)
         self._ax = ax
         self._zone: Any = None
         self._film: Any = None
         if limits.film[0] < limits.film[1]:
             right = ax.twinx()
             tidy(right)
-            (self._film,) = right.semilogy(
-                [], [], color=GREEN, lw=2, ls="-.", label="film thickness h"
-            )
+            name = "film thickness h" if limits.wet else "gap h"
+            (self._film,) = right.semilogy([], [], color=GREEN, lw=2, ls="-.", label=name)
             label(right, y="h [μm]", colour=GREEN)
             thinnest = max(0.7 * _UM * limits.film[0], _THINNEST_SHOWN)
             right.set_ylim(thinnest, max(1.5 * _UM * limits.film[1], 10 * thinnest))

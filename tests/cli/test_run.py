@@ -84,7 +84,7 @@ def test_transient_scenes_are_refused_before_anything_is_computed(calls: Calls) 
 def test_plot_names_the_figures_it_drew(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     drawn = [tmp_path / "pressure.png", tmp_path / "surface.png"]
     module = ModuleType("porolub.io.plots")
-    module.plot_directory = lambda path: drawn if path == tmp_path else []  # type: ignore[attr-defined]
+    module.plot_directory = lambda path, period=None: drawn if path == tmp_path else []  # type: ignore[attr-defined]
     monkeypatch.setitem(sys.modules, "porolub.io", ModuleType("porolub.io"))
     monkeypatch.setitem(sys.modules, "porolub.io.plots", module)
     result = CliRunner().invoke(app, ["plot", str(tmp_path)])
