@@ -27,10 +27,9 @@ STEPS: dict[str, str] = {
 }
 """Choice of time steps by TS."""
 
-KNOWN = (*DIRECT, *STEPS, "ts_monitor", "ts_view", "ts_adapt_monitor",
-         "snes_monitor", "snes_view", "snes_converged_reason", "ksp_monitor",
-         "ksp_rtol", "ksp_view", "ksp_converged_reason", "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7",
-         "options_left")
+KNOWN = (*DIRECT, *STEPS, "ts_monitor", "ts_view", "ts_adapt_monitor", "snes_monitor", "snes_view",
+         "snes_converged_reason", "ksp_monitor", "ksp_rtol", "ksp_view", "ksp_converged_reason",
+         "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7", "options_left")
 
 
 def names_in(text: str) -> list[str]:
