@@ -105,6 +105,7 @@ def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: boo
             outcome = solver.solve(resume, records, resumed)
             if outcome.time_steps:
                 recorder.checkpoint(solver.resume, now=True)
+            shown.done()  # its status would get between the lines of the tables
             finish(scene, outcome, out_dir, quiet)
         return 0
     finally:
