@@ -38,7 +38,8 @@ def plot_directory(directory: Path, period: int | None = None) -> list[Path]:
     history = history_of(directory)
     figures = {}
     if history is None or (directory / SUMMARY).exists():
-        figures = _figures_at_the_end(directory, scene, title)
+        moment = "" if history is None else f", t = {history['time'][-1]:.6g} s"
+        figures = _figures_at_the_end(directory, scene, title + moment)
     if history is not None:
         figures |= draw_history(Course.of(history, scene, period), title)
     elif period is not None:

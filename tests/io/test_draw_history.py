@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 
 from porolub.errors import SceneError
+from porolub.io import plots
 from porolub.io.directory import HISTORY_PLOTS, PLOTS, begin_run, write_results
 from porolub.io.draw_history import draw_history
 from porolub.io.plots import plot_directory
@@ -196,6 +197,19 @@ def test_a_finished_run_has_all_pictures(tmp_path: Path, report: Report, moving:
     write_results(tmp_path, report, moving, history_written=True)
     for name in (*PLOTS, *HISTORY_PLOTS):
         assert imread(tmp_path / name).shape[:2] == (700, 1200)
+
+
+def test_pictures_of_the_last_state_tell_its_time(
+    tmp_path: Path, report: Report, moving: Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    titles = {}
+    monkeypatch.setattr(plots, "save", lambda figure, path: titles.update(
+        {path.name: figure.axes[0].get_title(loc="left")}))  # fmt: skip
+    begin_run(tmp_path, moving)
+    write(tmp_path / "history.csv", case3())
+    write_results(tmp_path, report, moving, history_written=True)
+    at_the_end = {name for name, title in titles.items() if title.endswith(", t = 5 s)")}
+    assert at_the_end == set(PLOTS)
 
 
 def test_a_run_under_way_has_its_history(tmp_path: Path, moving: Scene) -> None:

@@ -103,6 +103,14 @@ def test_a_run_in_which_nothing_is_periodic_counts_as_a_whole(scene: Scene) -> N
     assert "full periods" not in text
 
 
+def test_a_run_that_failed_at_once_has_its_start(case3_scene: Scene) -> None:
+    history = {name: values[:1] for name, values in case3().items()}
+    text = printed(history, case3_scene)
+    assert text.startswith("Over the whole run, 0 s to 0 s")
+    assert "0 full periods" in text
+    assert "steps accepted" not in text
+
+
 def test_rounding_is_shown_as_zero(scene: Scene) -> None:
     history = {"time": np.array([0.0, 1.0]), "inflow_left": np.array([1e-3, 1e-16])}
     assert cells(history_table(history, scene))["inflow, left"][1:3] == ["0", "0"]
