@@ -66,6 +66,13 @@ class Derived:
         places = mesh.coordinates + (self.nodal("u") if "u" in self.model.dofs.fields else 0.0)
         return plane.offset - places @ np.asarray(plane.toward) - self.approach()
 
+    def thickness(self) -> Array:
+        """(nnode,) thickness of the film, scaled: exactly zero where nodes are in contact."""
+        gap = np.maximum(self.gap(), 0.0)
+        if "l" in self.model.dofs.fields:
+            gap[self.contact_pressure() > 0.0] = 0.0
+        return gap
+
     def approach(self) -> float:
         if "v0" in self.model.dofs.fields:
             return self.model.dofs.scalar_value("v0", self.x)
@@ -127,7 +134,7 @@ class Derived:
         circle = model.surface.circle
         radius = circle.radius * length if circle is not None else None
         v0 = self.approach() * length
-        gap = np.maximum(self.gap()[self.mine], 0.0)
+        gap = self.thickness()[self.mine]
         out |= {"approach": v0, "film_min": self.extreme(gap, False) * length}
         if radius:
             out["penetration_length"] = 2.0 * np.sqrt(v0 * (2 * radius - v0)) if v0 > 0 else 0.0

@@ -134,8 +134,7 @@ def gather_surface(model: Model, x: PETSc.Vec) -> SurfaceData | None:
         columns[:, 2], columns[:, 6] = pair[:, 0] * s.pressure, pair[:, 1] * s.speed
     if "l" in model.dofs.fields:
         columns[:, 3] = d.contact_pressure() * s.pressure
-    gap = np.maximum(d.gap(), 0.0)
-    columns[:, 4] = gap * s.length
+    columns[:, 4] = d.thickness() * s.length
     if d.film is not None:
         columns[:, 5] = _film_rows(d) * s.volume_flow / s.length ** (mesh.dim - 2)
     table = _to_root(mesh, d.nodes, mesh.global_node_count, columns)
