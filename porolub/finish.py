@@ -96,7 +96,7 @@ def _counts(model: Any) -> dict[str, int]:
 def _show(report: Report, scene: Any, out_dir: Path) -> None:
     console = Console()
     print_results(console, report.summary, scene)
-    if scene.time is not None:
+    if scene.time is not None and (out_dir / HISTORY).exists():  # not if the start failed
         print_history_table(console, read_history(out_dir / HISTORY), scene)
     printed = printed_for(scene.title)
     if printed is not None:
