@@ -22,7 +22,7 @@ DIRECT: dict[str, str] = {
 
 STEPS: dict[str, str] = {
     "ts_adapt_type": "basic",  # the next step from the last error alone: exact after a restart
-    "ts_adapt_safety": "0.63",  # cube root of AIM in solve/stepping.py: what a step aims at
+    "ts_adapt_safety": "0.63",  # aims at a quarter of the tolerance: few steps are taken back
     "ts_adapt_scale_solve_failed": "0.25",  # a step Newton cannot do is tried at a quarter
 }
 """Choice of time steps by TS."""

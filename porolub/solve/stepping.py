@@ -32,7 +32,6 @@ MAX_ITERATIONS = 12
 PATIENCE = 3  # strongly shortened Newton steps, after which a shorter time step is better
 SMALLEST_STEP = 1e-10  # scaled; below it a step that fails is given up
 GUESS = 0.8  # share of the straight extrapolation Newton starts from
-AIM = 0.25  # of the local error that is still accepted: what the next step is chosen for
 JUMP = 1e-7  # scaled; what changes within so short a step is a jump, which no step resolves
 IGNORED = 1e10  # error tolerance of an algebraic unknown
 TOO_INACCURATE = "the local error is above the tolerance"
@@ -92,7 +91,7 @@ class TimeStepper:
         self.newton = Newton(model.system, clock, observe, stop, self.ts)
         self.newton.tolerance, self.newton.max_iterations = NEWTON_TOLERANCE, MAX_ITERATIONS
         self.newton.limits, self.newton.patience = dict(STEP_LIMIT), PATIENCE
-        self.newton.given = self._given
+        self.newton.given, self.newton.reuse = self._given, True
         self.newton.snes.setInitialGuess(self._guess)
         self.ts.setIFunction(self._function, self.newton.residual)
         self.ts.setIJacobian(self._jacobian, self.newton.matrix)
@@ -306,4 +305,4 @@ class TimeStepper:
             r = dofs.range[name]
             mine = dofs.global_numbers[r][dofs.owned[r]] - first
             share = np.sqrt(counts[name] * len(self.sizes) / dofs.size)
-            weights.array[mine] = max(self.tolerance / AIM * largest * share, 1e-30)
+            weights.array[mine] = max(self.tolerance * largest * share, 1e-30)

@@ -194,8 +194,8 @@ class TransientSolver:
         drive(self.model, 0.0)
         system.apply_conditions(x)
         before = system.physical(dofs.to_local(x))
+        system.backward_euler(before, size)  # what was held under a plane not yet moved on
         drive(self.model, size * self.unit)
-        system.backward_euler(before, size)
         newton = Newton(system, self.clock, self.watch.newton, self.stop)
         newton.limits = dict(STEP_LIMIT)
         result = newton.solve(x, "from rest", max_iterations=60)
@@ -219,7 +219,7 @@ class TransientSolver:
 
     def _note_start(self) -> None:
         """The state a run starts from is a row of the history too."""
-        d = Derived(self.model, self.stepper.x)
+        d = self._evaluated()
         newest = self.stepper.lookback.entries[0]
         held = newest.content
         if "p" in self.model.dofs.fields:
@@ -256,10 +256,15 @@ class TransientSolver:
         self.totals.rejected_steps += len(step.rejected)
         self.totals.newton_iterations += step.newton_iterations
         start = wall.perf_counter()
-        self._record(Derived(self.model, self.stepper.x), step)
+        self._record(self._evaluated(), step)
         self._frames()
         self.watch.checkpoint(self.resume)
         self.clock.add("output", start)
+
+    def _evaluated(self) -> Derived:
+        d = Derived(self.model, self.stepper.x)
+        d.held = self.stepper.lookback.entries[0].content
+        return d
 
     def _record(self, d: Derived, step: Step) -> None:
         model, scene = self.model, self.scene

@@ -39,7 +39,9 @@ class Film:
     name: str = "film"
 
     def fields(self) -> list[Field]:
-        return [Field("p", 1, self.degree, support=self.boundary)] if self.alone else []
+        if not self.alone:
+            return []
+        return [Field("p", 1, self.degree, support=self.boundary, differential=True)]
 
     def reads(self) -> list[str]:
         return [] if self.alone else ["p"]

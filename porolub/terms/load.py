@@ -25,7 +25,7 @@ class LoadBalance:
     name: str = "load"
 
     def fields(self) -> list[Field]:
-        return [Field("v0", 1, 0)]
+        return [Field("v0", 1, 0, differential=True)]  # the film's thickness moves with it
 
     def reads(self) -> list[str]:
         return ["l"] * self.contact + ["p"] * self.fluid
