@@ -9,8 +9,7 @@ import numpy as np
 from porolub.solve.report import StepRecord
 
 COMPARED = {"load_solid": "load_applied", "load_fluid": "load_applied",
-            "friction_coefficient": "friction_coefficient", "approach": "approach",
-            "fluid_content": "fluid_content"}
+            "friction_coefficient": "friction_coefficient", "approach": "approach"}
 """What must repeat, and what its largest value is measured by."""
 PHASES = 201
 
