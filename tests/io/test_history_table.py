@@ -78,7 +78,7 @@ def test_a_run_that_does_not_repeat_yet_says_so(case3_scene: Scene) -> None:
     drift = 1 + 0.1 * history["time"] / 5
     text = printed(history | {"approach": history["approach"] * drift}, case3_scene)
     assert "the last period differs from the one before by 1.8 %: it does not repeat yet" in text
-    wild = history | {"fluid_content": np.where(history["time"] < 4.0, -1.0, 1.0)}
+    wild = history | {"approach": np.where(history["time"] < 4.0, -1.0, 1.0)}
     assert "by 200 %: it does not repeat yet (to 1 %)" in printed(wild, case3_scene)
 
 
