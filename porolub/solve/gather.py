@@ -45,7 +45,7 @@ def gather_fields(model: Model, x: PETSc.Vec) -> FieldData | None:
     """FieldData on rank 0, None elsewhere. Collective."""
     mesh, s = model.mesh, model.scales
     d = Derived(model, x)
-    domain = Domain("nodes of cells", mesh, 0)
+    domain = model.cell_nodes
     at = d.at(domain)
     J = at.deformation.J
     stress = np.zeros_like(J) if model.law is None else von_mises_stress(model.law, at.deformation)
@@ -88,7 +88,7 @@ def _pressure_everywhere(d: Derived) -> Array:
         return d.nodal("p")
     if field.support != "body":
         return on_surface_nodes(d, d.nodal("p"))
-    domain = Domain("nodes of cells", model.mesh, 0)
+    domain = model.cell_nodes
     return nodal_average(d, domain, d.at(domain).value("p")[..., None])
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -52,6 +53,11 @@ class Model:
     surface: LubricatedSurface | None
     dofs: Dofs
     system: System
+
+    @cached_property
+    def cell_nodes(self) -> Domain:
+        """The nodes of every cell as its points; made once, when fields are first asked for."""
+        return Domain("nodes of cells", self.mesh, 0)
 
     @property
     def plane(self) -> Plane | None:
