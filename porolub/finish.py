@@ -22,6 +22,7 @@ from porolub.solve.derived import scalars
 from porolub.solve.gather import gather_fields, gather_state, gather_surface
 from porolub.solve.report import Report, StepRecord
 from porolub.solve.steady import Outcome
+from porolub.together import on_root
 from porolub.versions import versions
 
 FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach", "j": "volume_change",
@@ -35,9 +36,13 @@ def finish(scene: Any, outcome: Outcome, out_dir: Path, quiet: bool) -> None:
     transient = scene.time is not None
     interrupted = outcome.status == "interrupted"
     start = time.perf_counter()
-    if report is not None:
-        write_results(out_dir, report, scene, options_used(), plots=not interrupted,
-                      history_written=transient)
+
+    def write() -> None:
+        if report is not None:
+            write_results(out_dir, report, scene, options_used(), plots=not interrupted,
+                          history_written=transient)
+
+    on_root(outcome.model.mesh.comm, write)
     outcome.clock.add("output", start)
     if report is not None and not quiet and not interrupted:
         _show(report, scene, out_dir)

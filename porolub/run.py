@@ -14,6 +14,7 @@ from porolub.io.progress import Progress
 from porolub.run_transient import run_transient
 from porolub.solve.options import set_options
 from porolub.solve.steady import SteadySolver
+from porolub.together import on_root
 
 
 def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = False) -> int:
@@ -26,7 +27,8 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
     comm = MPI.COMM_WORLD
     root = comm.rank == 0
     user_options = set_options(petsc_options)
-    setup_logging(Path(out_dir) if root else None)
+    setup_logging(None)
+    on_root(comm, lambda: setup_logging(Path(out_dir)))
     try:
         with Interrupt() as interrupt, Progress("quiet" if quiet or not root else "auto") as shown:
             solver = SteadySolver(scene, comm, shown.newton, shown.stage, user_options,

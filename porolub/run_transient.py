@@ -9,7 +9,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from porolub.errors import PorolubError, SceneError
+from porolub.errors import SceneError
 from porolub.finish import finish, options_used
 from porolub.interrupt import Interrupt
 from porolub.io.checkpoint import read_checkpoint, write_checkpoint
@@ -24,37 +24,35 @@ from porolub.solve.options import set_options
 from porolub.solve.report import FrameData, Resume, StepRecord
 from porolub.solve.transient import TransientSolver
 from porolub.solve.watch import Watch
+from porolub.together import on_root
 
 SPARINGLY = 20.0  # a checkpoint is due after so many times what the last one took
-
-
-def on_root(comm: Any, work: Callable[[], Any]) -> Any:
-    """Do something on rank 0 and return it on all; its errors are raised on all. Collective."""
-    result: Any = None
-    problem: PorolubError | None = None
-    if comm.rank == 0:
-        try:
-            result = work()
-        except PorolubError as error:
-            problem = error
-    result, problem = comm.bcast((result, problem), root=0)
-    if problem is not None:
-        raise problem
-    return result
 
 
 class Recorder:
     """Writes what a run tells, as it comes: history.csv, frames, checkpoint.h5."""
 
-    def __init__(self, directory: Path, scene: Any, comm: Any, progress: Progress, toml: str,
-                 resume: Resume | None) -> None:
+    def __init__(self, directory: Path, scene: Any, comm: Any, progress: Progress,
+                 toml: str) -> None:
         self.directory, self.comm, self.progress = directory, comm, progress
         self.toml, self.digest = toml, scene.digest()
         self._due = 0.0
-        if comm.rank == 0:
-            at = None if resume is None else resume.states[0].time
-            self.history = HistoryWriter(directory / HISTORY, at)
-            self.frames = FrameWriter(directory, 0 if resume is None else resume.frame)
+
+    def open(self, resume: Resume | None) -> list[StepRecord]:
+        """Begin the files anew, or go on with those there are from where ``resume`` stands.
+
+        Returns the steps so far, on all ranks. Collective; ``resume`` on rank 0.
+        """
+        return list(on_root(self.comm, lambda: self._open(resume)))
+
+    def _open(self, resume: Resume | None) -> list[StepRecord]:
+        path = self.directory / HISTORY
+        if resume is None:
+            self.history, self.frames = HistoryWriter(path), FrameWriter(self.directory)
+            return []
+        self.history = HistoryWriter(path, resume.states[0].time)
+        self.frames = FrameWriter(self.directory, resume.frame)
+        return read_records(path) if path.exists() else []
 
     def watch(self) -> Watch:
         """The hooks of a TransientSolver."""
@@ -95,11 +93,12 @@ def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: boo
     root = comm.rank == 0
     user_options = set_options(petsc_options)
     toml = on_root(comm, lambda: begin_run(out_dir, scene, options_used(), resume=resumed))
-    setup_logging(out_dir if root else None, resume=resumed)
+    setup_logging(None)
+    on_root(comm, lambda: setup_logging(out_dir, resume=resumed))
     try:
         with Interrupt() as interrupt, Progress("quiet" if quiet or not root else "auto") as shown:
-            recorder = Recorder(out_dir, scene, comm, shown, toml, resume)
-            records = read_records(out_dir / HISTORY) if resume is not None else []
+            recorder = Recorder(out_dir, scene, comm, shown, toml)
+            records = recorder.open(resume)
             solver = TransientSolver(scene, comm, recorder.watch(), user_options,
                                      interrupt.asked, interrupt.raise_if_asked)
             outcome = solver.solve(resume, records, resumed)

@@ -22,9 +22,10 @@ ALLOWED = {
     "study": (*BELOW, "errors", "io", "run", ""),
     "versions": ("",),
     "interrupt": ("errors",),
-    "finish": (*BELOW, "errors", "io", "versions", ""),
-    "run_transient": (*BELOW, "errors", "io", "interrupt", "finish"),
-    "run": (*BELOW, "errors", "io", "interrupt", "finish", "run_transient"),
+    "together": ("errors",),
+    "finish": (*BELOW, "errors", "io", "together", "versions", ""),
+    "run_transient": (*BELOW, "errors", "io", "interrupt", "together", "finish"),
+    "run": (*BELOW, "errors", "io", "interrupt", "together", "finish", "run_transient"),
     "cli": (*BELOW, "errors", "io", "study", "run", "run_transient", "versions", ""),
     "__main__": ("cli",),
     "": (),  # porolub/__init__.py
