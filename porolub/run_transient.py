@@ -18,7 +18,7 @@ from porolub.io.frames import FrameWriter
 from porolub.io.history import HistoryWriter, read_records
 from porolub.io.log import close_logging, setup_logging
 from porolub.io.progress import Progress
-from porolub.scene import load_scene
+from porolub.scene import load_scene, scene_from_dict
 from porolub.scene.compare import differences
 from porolub.solve.options import set_options
 from porolub.solve.report import FrameData, Resume, StepRecord
@@ -121,23 +121,30 @@ def restart(directory: Path, overrides: Any = (), petsc_options: str = "",
     comm, directory = MPI.COMM_WORLD, Path(directory)
     resume: Resume | None = None
 
-    def read() -> tuple[Any, float]:
+    def read() -> tuple[dict[str, Any], float]:
         nonlocal resume
         resume, before = read_checkpoint(directory / CHECKPOINT)
         scene = load_scene(directory / SCENE, overrides)
-        if scene.time is None or len(resume.states) < 2:
-            raise SceneError(f"{directory}: this is a steady run, there is nothing to go on with.")
-        keys = differences(before, scene.resolved())
-        if keys:
-            raise SceneError(f"{directory / CHECKPOINT} belongs to a scene that differs in "
-                             f"{', '.join(keys)}; only how far and how finely a run goes may "
-                             "change (such as time.end): run the scene anew.")
-        return scene, resume.states[0].time
+        _refuse_other_scene(directory / CHECKPOINT, before, scene)
+        return scene.resolved(), resume.states[0].time
 
-    scene, reached = on_root(comm, read)
+    tables, reached = on_root(comm, read)
+    scene = scene_from_dict(tables)
     if reached >= scene.time.end * (1 - 1e-12):
         if comm.rank == 0 and not quiet:
             print(f"{directory}: the run has reached its end at t = {reached:g} s; "
                   "--set time.end=... takes it further.")
         return 0
     return run_transient(scene, directory, petsc_options, quiet, resume, resumed=True)
+
+
+def _refuse_other_scene(checkpoint: Path, before: dict[str, Any], scene: Any) -> None:
+    """Raise SceneError unless the checkpoint is one of this scene, but for how far it goes."""
+    if "time" not in before:
+        raise SceneError(f"{checkpoint.parent}: this is a steady run, there is nothing to go on "
+                         "with.")
+    keys = differences(before, scene.resolved())
+    if keys:
+        raise SceneError(f"{checkpoint} belongs to a scene that differs in {', '.join(keys)}; only "
+                         "how far and how finely a run goes may change (such as time.end): run "
+                         "the scene anew.")
