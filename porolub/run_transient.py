@@ -12,7 +12,7 @@ from mpi4py import MPI
 from porolub.errors import SceneError
 from porolub.finish import finish, options_used
 from porolub.interrupt import Interrupt
-from porolub.io.checkpoint import read_checkpoint, write_checkpoint
+from porolub.io.checkpoint import read_checkpoint, read_digest, write_checkpoint
 from porolub.io.directory import CHECKPOINT, HISTORY, SCENE, begin_run
 from porolub.io.frames import FrameWriter
 from porolub.io.history import HistoryWriter, read_records
@@ -144,6 +144,8 @@ def _refuse_other_scene(checkpoint: Path, before: dict[str, Any], scene: Any) ->
         raise SceneError(f"{checkpoint.parent}: this is a steady run, there is nothing to go on "
                          "with.")
     keys = differences(before, scene.resolved())
+    if not keys and scene_from_dict(before).digest() != read_digest(checkpoint):
+        keys = ["the content of geometry.path"]  # the only thing a digest knows beside the tables
     if keys:
         raise SceneError(f"{checkpoint} belongs to a scene that differs in {', '.join(keys)}; only "
                          "how far and how finely a run goes may change (such as time.end): run "
