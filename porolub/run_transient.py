@@ -13,11 +13,12 @@ from porolub.errors import SceneError
 from porolub.finish import finish, options_used
 from porolub.interrupt import Interrupt
 from porolub.io.checkpoint import read_checkpoint, read_digest, write_checkpoint
-from porolub.io.directory import CHECKPOINT, HISTORY, SCENE, begin_run
+from porolub.io.directory import CHECKPOINT, HISTORY, SCENE, SUMMARY, begin_run
 from porolub.io.frames import FrameWriter
 from porolub.io.history import HistoryWriter, read_records
 from porolub.io.log import close_logging, setup_logging
 from porolub.io.progress import Progress
+from porolub.io.summary import read_summary
 from porolub.scene import load_scene, scene_from_dict
 from porolub.scene.compare import differences
 from porolub.solve.options import set_options
@@ -121,21 +122,20 @@ def restart(directory: Path, overrides: Any = (), petsc_options: str = "",
     comm, directory = MPI.COMM_WORLD, Path(directory)
     resume: Resume | None = None
 
-    def read() -> tuple[dict[str, Any], float]:
+    def read() -> tuple[dict[str, Any], str]:
         nonlocal resume
         resume, before = read_checkpoint(directory / CHECKPOINT)
         scene = load_scene(directory / SCENE, overrides)
         _refuse_other_scene(directory / CHECKPOINT, before, scene)
-        return scene.resolved(), resume.states[0].time
+        return scene.resolved(), _ended(directory, before, scene, resume.states[0].time)
 
-    tables, reached = on_root(comm, read)
-    scene = scene_from_dict(tables)
-    if reached >= scene.time.end * (1 - 1e-12):
+    tables, ended = on_root(comm, read)
+    if ended:
         if comm.rank == 0 and not quiet:
-            print(f"{directory}: the run has reached its end at t = {reached:g} s; "
-                  "--set time.end=... takes it further.")
+            print(f"{directory}: {ended}")
         return 0
-    return run_transient(scene, directory, petsc_options, quiet, resume, resumed=True)
+    return run_transient(scene_from_dict(tables), directory, petsc_options, quiet, resume,
+                         resumed=True)
 
 
 def _refuse_other_scene(checkpoint: Path, before: dict[str, Any], scene: Any) -> None:
@@ -150,3 +150,17 @@ def _refuse_other_scene(checkpoint: Path, before: dict[str, Any], scene: Any) ->
         raise SceneError(f"{checkpoint} belongs to a scene that differs in {', '.join(keys)}; only "
                          "how far and how finely a run goes may change (such as time.end): run "
                          "the scene anew.")
+
+
+def _ended(directory: Path, before: dict[str, Any], scene: Any, reached: float) -> str:
+    """Say why there is nothing left to do; empty where there is, be it the results to write."""
+    path = directory / SUMMARY
+    summary = read_summary(path) if path.exists() else {}
+    if summary.get("status") != "converged":
+        return ""
+    if reached >= scene.time.end * (1 - 1e-12):
+        return (f"the run has reached its end at t = {reached:g} s; --set time.end=... takes it "
+                "further.")
+    if scene.resolved()["time"] == before["time"]:
+        return f"{summary['message']}; --set time.until=end takes the run further."
+    return ""
