@@ -8,12 +8,13 @@ from pathlib import Path
 from typing import Any
 
 from mpi4py import MPI
+from petsc4py import PETSc
 
 from porolub.errors import SceneError
 from porolub.finish import finish, options_used
 from porolub.interrupt import Interrupt
 from porolub.io.checkpoint import read_checkpoint, read_digest, write_checkpoint
-from porolub.io.directory import CHECKPOINT, HISTORY, SCENE, SUMMARY, begin_run
+from porolub.io.directory import CHECKPOINT, HISTORY, OPTIONS, SCENE, SUMMARY, begin_run
 from porolub.io.frames import FrameWriter
 from porolub.io.history import HistoryWriter, read_records
 from porolub.io.log import close_logging, setup_logging
@@ -116,24 +117,28 @@ def restart(directory: Path, overrides: Any = (), petsc_options: str = "",
             quiet: bool = False) -> int:
     """Go on with the run in an output directory from its checkpoint. Returns 0. Collective.
 
-    ``overrides`` may change how far and how finely (porolub.scene.compare.MAY_CHANGE). Raises
-    SceneError for a directory without a checkpoint, or one of another scene (naming the keys).
+    ``overrides`` may change how far and how finely (porolub.scene.compare.MAY_CHANGE); PETSc
+    options are those of the run so far, ``petsc_options`` on top. Raises SceneError for a
+    directory without a checkpoint, or one of another scene (naming the keys).
     """
     comm, directory = MPI.COMM_WORLD, Path(directory)
     resume: Resume | None = None
 
-    def read() -> tuple[dict[str, Any], str]:
+    def read() -> tuple[dict[str, Any], str, str]:
         nonlocal resume
         resume, before = read_checkpoint(directory / CHECKPOINT)
         scene = load_scene(directory / SCENE, overrides)
         _refuse_other_scene(directory / CHECKPOINT, before, scene)
-        return scene.resolved(), _ended(directory, before, scene, resume.states[0].time)
+        options = directory / OPTIONS
+        return (scene.resolved(), options.read_text() if options.exists() else "",
+                _ended(directory, before, scene, resume.states[0].time))
 
-    tables, ended = on_root(comm, read)
+    tables, options, ended = on_root(comm, read)
     if ended:
         if comm.rank == 0 and not quiet:
             print(f"{directory}: {ended}")
         return 0
+    PETSc.Options().insertString(" ".join(options.split()))
     return run_transient(scene_from_dict(tables), directory, petsc_options, quiet, resume,
                          resumed=True)
 
