@@ -104,7 +104,7 @@ def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: boo
             solver = TransientSolver(scene, comm, recorder.watch(), user_options,
                                      interrupt.asked, interrupt.raise_if_asked)
             outcome = solver.solve(resume, records, resumed)
-            if outcome.time_steps:
+            if solver.records:
                 recorder.checkpoint(solver.resume, now=True)
             shown.done()  # its status would get between the lines of the tables
             finish(scene, outcome, out_dir, quiet)

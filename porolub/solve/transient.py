@@ -89,12 +89,12 @@ class TransientSolver:
         end = time.end / self.unit
         self.watch.begin(self.now * self.unit, time.end)
         for stop, kink in self._stops(end):
-            if stop <= self.now * (1 + 1e-12):
+            if stop < self.now * (1 - 1e-12):
                 continue
             failed = self._march_to(stop)
             if failed is not None:
                 return failed
-            if kink:
+            if kink and self.stepper.lookback.steps:  # not if a checkpoint was written since
                 self.stepper.restart(self.now)
                 self._next *= AT_A_KINK
             if time.until == "periodic" and self._repeats():
