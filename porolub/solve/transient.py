@@ -57,12 +57,13 @@ class TransientSolver:
         ``give_up``: the same for the steady start, which has nothing to keep (may raise).
         """
         self.scene, self.comm, self.watch, self.stop = scene, comm, watch, stop
+        self.give_up = give_up or stop
         self.records: list[StepRecord] = []
         self.totals = Totals()
         self._user_options = list(user_options)
         of_newton = [name for name in user_options if not name.startswith("ts_")]
         self.steady = SteadySolver(scene, comm, watch.newton, watch.stage, of_newton,
-                                   give_up or stop)
+                                   self.give_up)
         self.clock = self.steady.clock
         self._edges: tuple[float, ...] = ()
         self._frame = 0
@@ -196,7 +197,7 @@ class TransientSolver:
         before = system.physical(dofs.to_local(x))
         system.backward_euler(before, size)  # what was held under a plane not yet moved on
         drive(self.model, size * self.unit)
-        newton = Newton(system, self.clock, self.watch.newton, self.stop)
+        newton = Newton(system, self.clock, self.watch.newton, self.give_up)
         newton.limits = dict(STEP_LIMIT)
         result = newton.solve(x, "from rest", max_iterations=60)
         self.totals.newton_iterations += newton.iterations
