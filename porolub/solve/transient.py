@@ -170,6 +170,7 @@ class TransientSolver:
             self.stepper.restart(0.0, found.x)
             found.x.destroy()
             self.totals.newton_iterations = found.newton_iterations
+            self.totals.linear_iterations = found.linear_iterations
             shortest = min(self.scene.period or np.inf, time.end)
             self._next = (time.first_step or FIRST * shortest) / self.unit
         else:
@@ -201,6 +202,7 @@ class TransientSolver:
         newton.limits = dict(STEP_LIMIT)
         result = newton.solve(x, "from rest", max_iterations=60)
         self.totals.newton_iterations += newton.iterations
+        self.totals.linear_iterations += newton.linear_iterations
         newton.destroy()
         if not result.converged:
             return self._outcome(False, "The load could not be put on the layer at rest: "
@@ -338,6 +340,7 @@ class TransientSolver:
         if states is None:
             return None
         totals = {k: float(v) for k, v in vars(self.totals).items()}
+        totals["linear_iterations"] += self.stepper.newton.linear_iterations
         totals |= {f"gained {k}": e.gained for k, e in enumerate(entries)}
         totals |= {f"largest {name}": v for name, v in self.stepper.sizes.items()}
         return Resume(states, tuple(e.order for e in entries), self._next * self.unit,
@@ -361,7 +364,7 @@ class TransientSolver:
         t = self.totals
         newton = self.stepper.newton
         return Outcome(done, message, self.model, self.stepper.x, [], t.newton_iterations,
-                       newton.linear_iterations + self.steady.linear_iterations,
+                       newton.linear_iterations + t.linear_iterations,
                        t.rejected_steps, self.clock, self._edges,
                        status or ("converged" if done else "failed"), t.time_steps,
                        self._overall())

@@ -33,6 +33,7 @@ class Totals:
     time_steps: int = 0
     rejected_steps: int = 0
     newton_iterations: int = 0
+    linear_iterations: int = 0  # of the start, and of runs before a restart
     through: float = 0.0  # volume that has passed the boundaries or the surface
     content_start: float = 0.0
     content_swing: float = 0.0
