@@ -66,7 +66,7 @@ class TransientSolver:
                                    self.give_up)
         self.clock = self.steady.clock
         self._edges: tuple[float, ...] = ()
-        self._frame = 0
+        self._frame, self._frame_due = 0, 0.0  # number of the next picture, and when, s
         self._next = 0.0  # scaled: the step to try next
 
     # -- the run ------------------------------------------------------------------------------
@@ -250,6 +250,7 @@ class TransientSolver:
         self.stepper.sizes = {n: totals[f"largest {n}"] for n in self.stepper.sizes}
         self.stepper.replay(entries)
         self._next = step / self.unit
+        self._frame_due = self._next_frame()
         for name, kind in Totals.__annotations__.items():
             setattr(self.totals, name, (int if kind == "int" else float)(totals[name]))
 
@@ -308,18 +309,22 @@ class TransientSolver:
 
     def _frames(self) -> None:
         """Keep a picture if one is due."""
-        count = self.scene.time.frames
-        if not count:
-            return
-        apart = (self.scene.period or self.scene.time.end) / count
         now = self.now * self.unit
-        if now < self._frame * apart * (1 - 1e-9) and self._frame:
+        if not self.scene.time.frames or now < self._frame_due:
             return
         fields = gather_fields(self.model, self.stepper.x)
         surface = gather_surface(self.model, self.stepper.x)
-        number, self._frame = self._frame, int(now / apart * (1 + 1e-9)) + 1
+        number, self._frame = self._frame, self._frame + 1
+        self._frame_due = self._next_frame()
         frame = None if fields is None else FrameData(number, now, fields, surface)
         self.watch.frame(frame)
+
+    def _next_frame(self) -> float:
+        """When the first picture after the time reached is due, s."""
+        time = self.scene.time
+        apart = (self.scene.period or time.end) / max(time.frames, 1)
+        turn = int(self.now * self.unit / apart * (1 + 1e-9)) + 1
+        return float(turn * apart * (1 - 1e-9))
 
     def _repeats(self) -> bool:
         """Whether the period that has just ended repeats the one before."""
