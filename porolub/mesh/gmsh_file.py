@@ -1,5 +1,6 @@
 """Writing a mesh through gmsh, as a .msh file with named boundaries that DMPlex reads."""
 
+import signal
 from pathlib import Path
 
 import gmsh
@@ -17,6 +18,7 @@ def write_msh(raw: RawMesh, path: Path) -> None:
     dim = raw.cell.dim
     started = not gmsh.isInitialized()
     if started:
+        listener = signal.getsignal(signal.SIGTERM)
         gmsh.initialize(interruptible=False, readConfigFiles=False)
     gmsh.option.setNumber("General.Terminal", 0)
     gmsh.option.setNumber("Mesh.Binary", 1)
@@ -38,3 +40,5 @@ def write_msh(raw: RawMesh, path: Path) -> None:
         gmsh.model.remove()
         if started:
             gmsh.finalize()
+            # the PETSc inside gmsh has set it to its default: a run could not be stopped in order
+            signal.signal(signal.SIGTERM, listener or signal.SIG_DFL)
