@@ -1,12 +1,15 @@
 """SIGINT and SIGTERM as a request that all ranks see at the same point of the work.
 
 Batch systems send SIGTERM some time before they kill.  The first signal asks the run to stop in
-good order; a second one acts as it always does.
+good order; one that comes a while later acts as it always does.  Those in between are the same
+request again: ``timeout`` signals its child and then the group, batch systems every process and
+mpirun its ranks once more.
 """
 
 from __future__ import annotations
 
 import signal
+import time
 from types import FrameType, TracebackType
 from typing import Any, Self
 
@@ -15,13 +18,14 @@ from mpi4py import MPI
 from porolub.errors import Interrupted
 
 CAUGHT = (signal.SIGINT, signal.SIGTERM)
+SAME_REQUEST = 2.0  # s from the first signal
 
 
 class Interrupt:
     """Catches the signals while it is entered."""
 
     def __init__(self) -> None:
-        self._number = 0
+        self._number, self._since = 0, 0.0
         self._usual: dict[int, Any] = {}
 
     def __enter__(self) -> Self:
@@ -34,9 +38,11 @@ class Interrupt:
             signal.signal(number, handler)
 
     def _note(self, number: int, frame: FrameType | None) -> None:
-        self._number = number
-        for each, handler in self._usual.items():
-            signal.signal(each, handler)
+        if not self._number:
+            self._number, self._since = number, time.monotonic()
+        elif time.monotonic() > self._since + SAME_REQUEST:
+            signal.signal(number, self._usual[number])
+            signal.raise_signal(number)
 
     def asked(self, comm: Any) -> str:
         """Which signal any rank of ``comm`` has got, in words; empty for none. Collective."""
