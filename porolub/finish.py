@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 from mpi4py import MPI
-from rich.console import Console
 
 from porolub.errors import Interrupted, SolveError
 from porolub.io.directory import HISTORY, write_results
@@ -17,6 +16,7 @@ from porolub.io.history import read_history
 from porolub.io.history_table import print_history_table
 from porolub.io.printed import printed_for
 from porolub.io.table import print_comparison, print_results
+from porolub.io.terminal import new_console
 from porolub.scene import effects
 from porolub.solve.derived import scalars
 from porolub.solve.gather import gather_fields, gather_state, gather_surface
@@ -99,7 +99,7 @@ def _counts(model: Any) -> dict[str, int]:
 
 
 def _show(report: Report, scene: Any, out_dir: Path) -> None:
-    console = Console()
+    console = new_console()
     print_results(console, report.summary, scene)
     if scene.time is not None and (out_dir / HISTORY).exists():  # not if the start failed
         print_history_table(console, read_history(out_dir / HISTORY), scene)

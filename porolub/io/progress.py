@@ -19,6 +19,7 @@ from rich.text import Text
 from porolub.io.newton_lines import NewtonLines
 from porolub.io.status import StepStatus, solve_status
 from porolub.io.step_lines import COMMENT, StepLines, rejected_line
+from porolub.io.terminal import new_console
 from porolub.solve.report import NewtonRecord, StepRecord
 
 Mode = Literal["auto", "live", "lines", "quiet"]
@@ -33,7 +34,7 @@ class Progress:
     """
 
     def __init__(self, mode: Mode = "auto", console: Console | None = None) -> None:
-        self._console = console or Console()
+        self._console = console or new_console()
         if mode == "auto":
             terminal = self._console.is_terminal and not self._console.is_dumb_terminal
             mode = "live" if terminal else "lines"
