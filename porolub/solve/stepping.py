@@ -36,6 +36,7 @@ JUMP = 1e-7  # scaled; what changes within so short a step is a jump, which no s
 IGNORED = 1e10  # error tolerance of an algebraic unknown
 TOO_INACCURATE = "the local error is above the tolerance"
 GAVE_UP = PETSc.TS.ConvergedReason.DIVERGED_NONLINEAR_SOLVE
+_PreStage = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double)
 _PostStage = ctypes.CFUNCTYPE(ctypes.c_int, ctypes.c_void_p, ctypes.c_double, ctypes.c_int,
                               ctypes.c_void_p)
 
@@ -102,8 +103,9 @@ class TimeStepper:
         ts.setEquationType(PETSc.TS.EquationType.IMPLICIT)
         library, handle = petsc_library(), ctypes.c_void_p(ts.handle)
         library.TSBDFSetOrder(handle, ctypes.c_int(order))
-        self._post_stage = _PostStage(self._stage_done)  # must live as long as the TS
-        library.TSSetPostStage(handle, self._post_stage)
+        self._stages = _PreStage(self._stage_begins), _PostStage(self._stage_done)  # TS needs them
+        library.TSSetPreStage(handle, self._stages[0])
+        library.TSSetPostStage(handle, self._stages[1])
         ts.setExactFinalTime(PETSc.TS.ExactFinalTime.STEPOVER)
         ts.setMaxTime(1e300)
         ts.setMaxSteps(2**31 - 1)
@@ -190,8 +192,6 @@ class TimeStepper:
     # -- callbacks of TS ----------------------------------------------------------------------
     def _function(self, ts: PETSc.TS, t: float, x: PETSc.Vec, xdot: PETSc.Vec,
                   f: PETSc.Vec) -> None:
-        if t != self._stage:
-            self._aim(t)
         self.newton.function(self.newton.snes, x, f)
 
     def _aim(self, t: float) -> None:
@@ -224,16 +224,16 @@ class TimeStepper:
         """Extrapolate in a straight line, and a little less than all the way.
 
         TS's own guess is a parabola at order 2; where nodes open and close it overshoots, and
-        Newton then needs a third more iterations (measured on Case 2).
+        Newton then needs a third more iterations (measured on Case 2).  Prescribed values are put
+        in at once: other rows of the matrix do not know of them.
         """
         newest = self.lookback.entries[0]
-        if self.lookback.steps == 0:
-            x.array[:] = newest.x
-            return
-        before = self.lookback.entries[1]
-        ahead = (self.ts.getTime() + self.ts.getTimeStep() - newest.time) / (
-            newest.time - before.time)
-        x.array[:] = newest.x + GUESS * ahead * (newest.x - before.x)
+        x.array[:] = newest.x
+        if self.lookback.steps > 0:
+            before = self.lookback.entries[1]
+            ahead = (self._stage - newest.time) / (newest.time - before.time)
+            x.array[:] += GUESS * ahead * (newest.x - before.x)
+        self.model.system.apply_conditions(x)
 
     def _given(self, x: PETSc.Vec) -> bool:
         """In a replay the state is known: put it in, there is nothing to iterate."""
@@ -243,10 +243,16 @@ class TimeStepper:
         x.array[:] = half if self._is_half(self._stage) else end
         return True
 
+    # Called from C before and after a Newton solve: an exception goes on in ``step``.
+    def _stage_begins(self, ts: int, t: float) -> int:
+        return self._kept(self._aim, t)
+
     def _stage_done(self, ts: int, t: float, index: int, states: int) -> int:
-        """After a Newton solve. Called from C: an exception goes on in ``step``."""
+        return self._kept(self._take_note, t)
+
+    def _kept(self, work: Callable[[float], None], t: float) -> int:
         try:
-            self._take_note(t)
+            work(t)
         except Exception as problem:
             self._problem = problem
             return 1
