@@ -194,7 +194,6 @@ class TransientSolver:
             dofs.set_scalar("v0", x, place / self.model.scales.length)
         size = SUDDEN * min(1.0, time.end / self.unit)
         drive(self.model, 0.0)
-        system.apply_conditions(x)
         before = system.physical(dofs.to_local(x))
         system.backward_euler(before, size)  # what was held under a plane not yet moved on
         drive(self.model, size * self.unit)
