@@ -20,7 +20,7 @@ from porolub.solve.periodic import difference_of_periods
 from porolub.solve.place import place_in_words
 from porolub.solve.report import FrameData, Resume, StepRecord
 from porolub.solve.resume import Gathered, owned_values
-from porolub.solve.startup import STEP_LIMIT
+from porolub.solve.startup import PRESSED_IN, STEP_LIMIT
 from porolub.solve.steady import Outcome, SteadySolver
 from porolub.solve.stepping import Rejection, Step, TimeStepper
 from porolub.solve.watch import Totals, Watch
@@ -197,6 +197,8 @@ class TransientSolver:
         before = system.physical(dofs.to_local(x))
         system.backward_euler(before, size)  # what was held under a plane not yet moved on
         drive(self.model, size * self.unit)
+        if "v0" in dofs.fields and not self.scene.film:  # nothing holds a plane that only touches
+            dofs.set_scalar("v0", x, PRESSED_IN)
         newton = Newton(system, self.clock, self.watch.newton, self.give_up)
         newton.limits = dict(STEP_LIMIT)
         result = newton.solve(x, "from rest", max_iterations=60)
