@@ -28,6 +28,7 @@ from porolub.solve.startup import STEP_LIMIT
 
 Array = NDArray[np.float64]
 NEWTON_TOLERANCE = 1e-5  # scaled update at which Newton stops; the error left is of its square
+RIGID_TOLERANCE = 1e-7  # between rigid walls, where a film may be far thinner than a layer
 MAX_ITERATIONS = 12
 PATIENCE = 3  # strongly shortened Newton steps, after which a shorter time step is better
 SMALLEST_STEP = 1e-10  # scaled; below it a step that fails is given up
@@ -90,7 +91,9 @@ class TimeStepper:
         self._replay: tuple[Array, Array] | None = None  # states of its half step and its end
         self.ts = self._create(order)
         self.newton = Newton(model.system, clock, observe, stop, self.ts)
-        self.newton.tolerance, self.newton.max_iterations = NEWTON_TOLERANCE, MAX_ITERATIONS
+        soft = "u" in model.dofs.fields
+        self.newton.tolerance = NEWTON_TOLERANCE if soft else RIGID_TOLERANCE
+        self.newton.max_iterations = MAX_ITERATIONS
         self.newton.limits, self.newton.patience = dict(STEP_LIMIT), PATIENCE
         self.newton.given, self.newton.reuse = self._given, True
         self.newton.snes.setInitialGuess(self._guess)
