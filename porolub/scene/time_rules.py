@@ -84,3 +84,8 @@ def _inertia(scene: "Scene") -> Iterator[str]:
         yield 'solid.inertia = true needs solid.density, such as "1100 kg/m^3".'
     if scene.time is None:
         yield "solid.inertia = true needs a [time] section: in a steady state nothing accelerates."
+    elif scene.time.order == 3:
+        yield (
+            "time.order = 3 with solid.inertia = true lets vibrations grow that nothing damps; "
+            "allowed there: 1 and 2."
+        )

@@ -225,6 +225,6 @@ def scene_tables(draw: st.DrawFn) -> dict[str, Any]:
                 },
             )
         )
-        if "density" in tables["solid"]:
+        if "density" in tables["solid"] and tables["time"].get("order") != 3:
             tables["solid"]["inertia"] = draw(st.booleans())
     return tables

@@ -43,6 +43,15 @@ def test_inertia_needs_density_and_time() -> None:
     assert text.startswith("solid.inertia = true needs a [time] section")
 
 
+@pytest.mark.parametrize("order", [1, 2])
+def test_inertia_is_for_orders_that_let_no_vibration_grow(order: int) -> None:
+    """BDF of order 3 is unstable along most of the imaginary axis up to 1.94i."""
+    assert scene(solid=INERTIA, time={"end": "5 s", "order": order}).time is not None
+    text = refusal(solid=INERTIA, time={"end": "5 s", "order": 3})
+    assert text.startswith("time.order = 3 with solid.inertia = true")
+    assert text.endswith("allowed there: 1 and 2.")
+
+
 FLUID: dict[str, Any] = {"compressibility": "0.1 1/GPa", "porosity": 0.8}
 
 
