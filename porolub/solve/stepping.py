@@ -31,9 +31,9 @@ NEWTON_TOLERANCE = 1e-5  # scaled update at which Newton stops; the error left i
 RIGID_TOLERANCE = 1e-7  # between rigid walls, where a film may be far thinner than a layer
 MAX_ITERATIONS = 12
 PATIENCE = 3  # strongly shortened Newton steps, after which a shorter time step is better
-SMALLEST_STEP = 1e-10  # scaled; below it a step that fails is given up
+SMALLEST_STEP = 1e-10  # of the layer's own time and the end; below it a step that fails is given up
 GUESS = 0.8  # share of the straight extrapolation Newton starts from
-JUMP = 1e-7  # scaled; what changes within so short a step is a jump, which no step resolves
+JUMP = 1e-7  # likewise; what changes within so short a step is a jump, which no step resolves
 IGNORED = 1e10  # error tolerance of an algebraic unknown
 TOO_INACCURATE = "the local error is above the tolerance"
 GAVE_UP = PETSc.TS.ConvergedReason.DIVERGED_NONLINEAR_SOLVE
@@ -82,6 +82,7 @@ class TimeStepper:
         self.lookback = Lookback(order)
         self.sizes = {name: 0.0 for name, f in model.dofs.fields.items() if f.differential}
         self._error_weights = model.dofs.vector()
+        self._span = min(1.0, model.scene.time.end / model.scales.time)
         # of the step under way
         self._stage, self._iterations = -np.inf, 0
         self._pending: Entry | None = None
@@ -268,7 +269,7 @@ class TimeStepper:
         if not result.converged:
             now, self._place = self.lookback.entries[0].time, result.place
             self._rejected.append(Rejection(now, size, result.why))
-            if self.newton.stop(self.model.mesh.comm) or size < SMALLEST_STEP:
+            if self.newton.stop(self.model.mesh.comm) or size < SMALLEST_STEP * self._span:
                 self.ts.setConvergedReason(GAVE_UP)
             return
         entry = self._entry(t, snes.getSolution())
@@ -306,7 +307,7 @@ class TimeStepper:
         """
         dofs, weights = self.model.dofs, self._error_weights
         weights.set(IGNORED)
-        if self._replay is not None or size < JUMP:
+        if self._replay is not None or size < JUMP * self._span:
             return
         counts = dofs.counts()
         first = weights.getOwnershipRange()[0]
