@@ -55,6 +55,11 @@ def set_options(text: str) -> list[str]:
     return names
 
 
+def fixed_steps() -> bool:
+    """Whether the user wants steps of one size, as studies of order need them."""
+    return PETSc.Options().getString("ts_adapt_type", "") == "none"
+
+
 def refuse_unused_together(names: list[str], comm: Any) -> None:
     """As ``refuse_unused`` on rank 0, which takes part in every solve; all ranks raise. Collective.
     """

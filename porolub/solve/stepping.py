@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from porolub.fem.coo import petsc_library
+from porolub.fem.dofs import Field
 from porolub.solve.balance import fluid_balance
 from porolub.solve.drive import drive
 from porolub.solve.lookback import Entry, Lookback
@@ -68,6 +69,15 @@ class Step:
     place: Place | None = None
 
 
+def differential(fields: dict[str, Field]) -> list[str]:
+    """Unknowns whose error counts: those with a time derivative in their equations.
+
+    The approach has one where nothing else moves: between rigid surfaces.
+    """
+    moving = ["v0"] if "v0" in fields and "u" not in fields else []
+    return [name for name, f in fields.items() if f.differential] + moving
+
+
 class TimeStepper:
     """Steps one model on from a consistent state; ``x`` is the current one (scaled, global).
 
@@ -80,7 +90,7 @@ class TimeStepper:
         self.model, self.tolerance = model, tolerance
         self.x = model.dofs.vector()
         self.lookback = Lookback(order)
-        self.sizes = {name: 0.0 for name, f in model.dofs.fields.items() if f.differential}
+        self.sizes = dict.fromkeys(differential(model.dofs.fields), 0.0)
         self._error_weights = model.dofs.vector()
         self._span = min(1.0, model.scene.time.end / model.scales.time)
         # of the step under way

@@ -10,12 +10,13 @@ from typing import Any
 import numpy as np
 
 from porolub.errors import SceneError
+from porolub.scene.history import period_of
 from porolub.solve.balance import FluidBalance
 from porolub.solve.derived import Derived, scalars_of
 from porolub.solve.drive import drive
 from porolub.solve.gather import gather_fields, gather_surface
 from porolub.solve.newton import Newton
-from porolub.solve.options import refuse_unused_together
+from porolub.solve.options import fixed_steps, refuse_unused_together
 from porolub.solve.periodic import difference_of_periods
 from porolub.solve.place import place_in_words
 from porolub.solve.report import FrameData, Resume, StepRecord
@@ -29,6 +30,7 @@ log = logging.getLogger(__name__)
 FIRST = 1e-3  # of the period or the end: the first step from a steady state
 SUDDEN = 1e-6  # of the layer's own time and the end: within it a load from rest is put on
 EASY = 3.5  # Newton iterations that steps are to take on average, where Newton limits them
+STEPS_OF_A_PERIOD = 20  # at least
 AT_A_KINK = 0.1  # of the step before: the first step after a kink
 LIFTED = {True: -10e-6, False: 0.0}  # m; where the plane starts from rest with a film, without
 
@@ -107,7 +109,7 @@ class TransientSolver:
         return self._outcome(True, "reached the end")
 
     def _march_to(self, stop: float) -> Outcome | None:
-        longest = (self.scene.time.step_max or np.inf) / self.unit
+        longest = self._longest()
         while stop - self.now > 1e-12 * stop:
             size = min(self._landing(self._next, stop - self.now), longest)
             step = self.stepper.step(size)
@@ -120,12 +122,19 @@ class TransientSolver:
                 return self._failed(step)
             cut_short = size < self._next and not step.rejected
             self._next = max(self.stepper.next_size, self._next if cut_short else 0.0)
-            self._next = min(self._next, step.size * ease(step.last_iterations))
+            if not fixed_steps():
+                self._next = min(self._next, step.size * ease(step.last_iterations))
             self._accepted(step)
             why = self.stop(self.comm)
             if why:
                 return self._outcome(False, why, "interrupted")
         return None
+
+    def _longest(self) -> float:
+        """No step may be longer, scaled: of each cycle enough is seen not to step over it."""
+        periods = [p for p in map(period_of, self.scene.histories().values()) if p is not None]
+        shortest = min(periods, default=np.inf)
+        return min(self.scene.time.step_max or np.inf, shortest / STEPS_OF_A_PERIOD) / self.unit
 
     @staticmethod
     def _landing(size: float, left: float) -> float:
