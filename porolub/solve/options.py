@@ -27,6 +27,12 @@ STEPS: dict[str, str] = {
 }
 """Choice of time steps by TS."""
 
+OF_THE_SCENE: dict[str, str] = {
+    "ts_type": "order", "ts_bdf_order": "order", "ts_dt": "first_step", "ts_init_time": "start",
+    "ts_max_time": "end", "ts_max_steps": "end", "ts_rtol": "tolerance", "ts_atol": "tolerance",
+}
+"""What TS would read but not heed, or not survive, and the key of [time] that says it."""
+
 KNOWN = (*DIRECT, *STEPS, "ts_monitor", "ts_view", "ts_adapt_monitor", "snes_monitor", "snes_view",
          "snes_converged_reason", "ksp_monitor", "ksp_rtol", "ksp_view", "ksp_converged_reason",
          "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7", "options_left")
@@ -41,14 +47,19 @@ def names_in(text: str) -> list[str]:
 def set_options(text: str) -> list[str]:
     """Put the user's options and, under them, the defaults into PETSc's database.
 
-    Returns the user's names. Raises SceneError for text that holds no option.
+    Returns the user's names. Raises SceneError for text that holds no option and for options that
+    are the scene's to say.
     """
     names = names_in(text)
     if text.strip() and not names:
         raise SceneError(f"--petsc = {text!r}: options start with a dash, such as "
                          "--petsc \"-snes_monitor\".")
+    for name in names:
+        if name in OF_THE_SCENE:
+            raise SceneError(f"--petsc -{name}: this is for the scene to say, by "
+                             f"time.{OF_THE_SCENE[name]}.")
     options = PETSc.Options()
-    options.insertString(text)
+    options.insertString(" ".join(text.split()))
     for key, value in (DIRECT | STEPS).items():
         if not options.hasName(key):
             options.setValue(key, value)
