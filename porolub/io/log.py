@@ -1,6 +1,8 @@
 """log.txt: what happened in a run, through Python's logging (loggers below ``porolub``)."""
 
 import logging
+import sys
+from contextlib import suppress
 from pathlib import Path
 
 from porolub.errors import SceneError
@@ -9,6 +11,18 @@ from porolub.io.directory import prepare_directory
 FORMAT = "%(asctime)s %(levelname)-7s %(name)s: %(message)s"
 ROOT = "porolub"
 _installed: list[logging.Handler] = []
+
+
+class _LogFile(logging.FileHandler):
+    """A log that ends where the disk is full; the files that matter say so in a sentence."""
+
+    def handleError(self, record: logging.LogRecord) -> None:
+        if not isinstance(sys.exception(), OSError):
+            super().handleError(record)
+
+    def close(self) -> None:
+        with suppress(OSError):  # of what could not be written before
+            super().close()
 
 
 def setup_logging(directory: Path | None, level: int = logging.INFO, *,
@@ -24,7 +38,7 @@ def setup_logging(directory: Path | None, level: int = logging.INFO, *,
         prepare_directory(directory)
         path = directory / "log.txt"
         try:
-            handler = logging.FileHandler(path, mode="a" if resume else "w", encoding="utf-8")
+            handler = _LogFile(path, mode="a" if resume else "w", encoding="utf-8")
         except OSError as error:
             raise SceneError(f"{path}: the log cannot be written ({error.strerror}).") from error
         handler.setFormatter(logging.Formatter(FORMAT))

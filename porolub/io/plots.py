@@ -6,6 +6,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from porolub.errors import SceneError
+from porolub.io.atomic import reported
 from porolub.io.directory import HISTORY, HISTORY_PLOTS, PLOTS, SUMMARY, SURFACE
 from porolub.io.draw_fields import can_draw, draw_field
 from porolub.io.draw_history import draw_history
@@ -28,8 +29,8 @@ def plot_directory(directory: Path, period: int | None = None) -> list[Path]:
     of the paper; loads.png, flows.png, friction.png, lengths.png: Figures 8a to 8d, over a period
     (from 1; the last full one if not given) or the whole run where nothing is periodic. A transient
     run that has not finished has the latter. Pictures there is no data for are taken away. Raises
-    SceneError where the directory is missing, damaged, not writable or not the output of a run, or
-    does not have that period.
+    SceneError where the directory is missing, damaged or not the output of a run, or does not have
+    that period, and SolveError where a picture cannot be written.
     """
     if not directory.is_dir():
         raise SceneError(f"{directory}: there is no such directory.")
@@ -44,14 +45,11 @@ def plot_directory(directory: Path, period: int | None = None) -> list[Path]:
         figures |= draw_history(Course.of(history, scene, period), title)
     elif period is not None:
         raise SceneError(f"--period: {directory} has no history of several steps to choose from.")
-    try:
+    with reported(directory, "the figures"):
         for name in (*PLOTS, *HISTORY_PLOTS):
             if name not in figures:
                 (directory / name).unlink(missing_ok=True)
         return [save(figure, directory / name) for name, figure in figures.items()]
-    except OSError as error:
-        reason = error.strerror or error
-        raise SceneError(f"{directory}: the figures cannot be written ({reason}).") from error
 
 
 def history_of(directory: Path) -> History | None:
