@@ -48,7 +48,9 @@ def gather_fields(model: Model, x: PETSc.Vec) -> FieldData | None:
     domain = model.cell_nodes
     at = d.at(domain)
     J = at.deformation.J
-    stress = np.zeros_like(J) if model.law is None else von_mises_stress(model.law, at.deformation)
+    with np.errstate(divide="ignore", invalid="ignore"):  # J at nodes may fall below 0 in a crush
+        stress = (np.zeros_like(J) if model.law is None
+                  else von_mises_stress(model.law, at.deformation))
     columns = [J[..., None], stress[..., None]]
     pores = model.scene.pores
     if pores is not None:

@@ -96,6 +96,7 @@ class TimeStepper:
         # of the step under way
         self._stage, self._iterations = -np.inf, 0
         self._pending: Entry | None = None
+        self._scheme: tuple[float, dict[str, Array]] = (0.0, {})  # rate, known of the last step
         self._rejected: list[Rejection] = []
         self._place: Place | None = None
         self._problem: Exception | None = None
@@ -159,15 +160,25 @@ class TimeStepper:
         rejected = tuple(self._rejected)
         if self.ts.getConvergedReason() < 0 or self._pending is None:
             last = rejected[-1]
+            self._take_back()
             return Step(last.time, last.size, order, self._iterations, 0, rejected, last.why,
                         self._place)
         entry, before = self._pending, self.lookback.entries[0].time
         self.lookback.accept(entry)
+        self._scheme = self.model.system.rate, self.model.system.known
         self.sizes = self._sizes_of(self.x)
         PETSc.garbage_cleanup()
         last_iterations = self.newton.snes.getIterationNumber()
         return Step(entry.time, entry.time - before, order, self._iterations, last_iterations,
                     rejected)
+
+    def _take_back(self) -> None:
+        """After a step that failed: all is again as the last accepted one left it."""
+        system, newest = self.model.system, self.lookback.entries[0]
+        self.x.array[:] = newest.x
+        system.rate, system.known = self._scheme
+        drive(self.model, newest.time * self.model.scales.time)
+        system.residual(self.x, self.newton.residual)  # for the lowest J
 
     @property
     def next_size(self) -> float:
