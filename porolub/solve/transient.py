@@ -10,13 +10,13 @@ from typing import Any
 import numpy as np
 
 from porolub.errors import SceneError
-from porolub.scene.history import period_of
 from porolub.solve.balance import FluidBalance
 from porolub.solve.derived import Derived, scalars_of
 from porolub.solve.drive import drive
 from porolub.solve.gather import gather_fields, gather_surface
 from porolub.solve.newton import Newton
 from porolub.solve.options import fixed_steps, refuse_unused_together
+from porolub.solve.pacing import ease, landing, longest, stops
 from porolub.solve.periodic import difference_of_periods
 from porolub.solve.place import place_in_words
 from porolub.solve.report import FrameData, Resume, StepRecord
@@ -29,21 +29,8 @@ from porolub.solve.watch import Totals, Watch
 log = logging.getLogger(__name__)
 FIRST = 1e-3  # of the period or the end: the first step from a steady state
 SUDDEN = 1e-6  # of the layer's own time and the end: within it a load from rest is put on
-EASY = 3.5  # Newton iterations that steps are to take on average, where Newton limits them
-STEPS_OF_A_PERIOD = 20  # at least
 AT_A_KINK = 0.1  # of the step before: the first step after a kink
 LIFTED = {True: -10e-6, False: 0.0}  # m; where the plane starts from rest with a film, without
-
-
-def ease(iterations: int) -> float:
-    """How much longer the next step may be, by how hard this one was for Newton.
-
-    Steps that take more than EASY iterations cost more than two shorter ones, which are also
-    more accurate and are rejected less.
-    """
-    return float(np.clip((EASY / max(iterations, 1)) ** 1.5, 0.5, 2.0))
-
-
 NOBODY = Watch()
 
 
@@ -89,9 +76,8 @@ class TransientSolver:
 
     def _march(self) -> Outcome:
         time = self.scene.time
-        end = time.end / self.unit
         self.watch.begin(self.now * self.unit, time.end)
-        for stop, kink in self._stops(end):
+        for stop, kink in stops(self.scene, self.unit):
             if stop < self.now * (1 - 1e-12):
                 continue
             failed = self._march_to(stop)
@@ -109,9 +95,9 @@ class TransientSolver:
         return self._outcome(True, "reached the end")
 
     def _march_to(self, stop: float) -> Outcome | None:
-        longest = self._longest()
+        limit = longest(self.scene, self.unit)
         while stop - self.now > 1e-12 * stop:
-            size = min(self._landing(self._next, stop - self.now), longest)
+            size = min(landing(self._next, stop - self.now), limit)
             step = self.stepper.step(size)
             if self._user_options:
                 refuse_unused_together(self._user_options, self.comm)
@@ -129,30 +115,6 @@ class TransientSolver:
             if why:
                 return self._outcome(False, why, "interrupted")
         return None
-
-    def _longest(self) -> float:
-        """No step may be longer, scaled: of each cycle enough is seen not to step over it."""
-        periods = [p for p in map(period_of, self.scene.histories().values()) if p is not None]
-        shortest = min(periods, default=np.inf)
-        return min(self.scene.time.step_max or np.inf, shortest / STEPS_OF_A_PERIOD) / self.unit
-
-    @staticmethod
-    def _landing(size: float, left: float) -> float:
-        """A step that ends at the stop, or leaves as much again for another one."""
-        if size >= left * (1 - 1e-9):
-            return left
-        return left / 2 if 2 * size > left else size
-
-    def _stops(self, end: float) -> list[tuple[float, bool]]:
-        """Times to land on exactly, and whether the slope of something jumps there (scaled)."""
-        kinks = {t / self.unit: True for t in self.scene.kinks(0.0, self.scene.time.end)}
-        periods: dict[float, bool] = {}
-        if self.scene.period is not None:
-            count = int(self.scene.time.end / self.scene.period * (1 + 1e-12))
-            periods = {n * self.scene.period / self.unit: False for n in range(1, count + 1)}
-        found = sorted({**periods, **kinks, end: False}.items())
-        return [(t, kink) for k, (t, kink) in enumerate(found)
-                if k + 1 == len(found) or found[k + 1][0] - t > 1e-9 * end]
 
     @property
     def now(self) -> float:
