@@ -29,6 +29,7 @@ from porolub.solve.watch import Totals, Watch
 log = logging.getLogger(__name__)
 FIRST = 1e-3  # of the period or the end: the first step from a steady state
 SUDDEN = 1e-6  # of the layer's own time and the end: within it a load from rest is put on
+RESOLVED = 1e-12  # of the time reached; shorter steps are lost in rounding
 AT_A_KINK = 0.1  # of the step before: the first step after a kink
 LIFTED = {True: -10e-6, False: 0.0}  # m; where the plane starts from rest with a film, without
 NOBODY = Watch()
@@ -78,7 +79,7 @@ class TransientSolver:
         time = self.scene.time
         self.watch.begin(self.now * self.unit, time.end)
         for stop, kink in stops(self.scene, self.unit):
-            if stop < self.now * (1 - 1e-12):
+            if stop < self.now * (1 - RESOLVED):
                 continue
             failed = self._march_to(stop)
             if failed is not None:
@@ -96,7 +97,7 @@ class TransientSolver:
 
     def _march_to(self, stop: float) -> Outcome | None:
         limit = longest(self.scene, self.unit)
-        while stop - self.now > 1e-12 * stop:
+        while stop - self.now > RESOLVED * stop:
             size = min(landing(self._next, stop - self.now), limit)
             step = self.stepper.step(size)
             if self._user_options:
@@ -114,6 +115,8 @@ class TransientSolver:
             why = self.stop(self.comm)
             if why:
                 return self._outcome(False, why, "interrupted")
+            if self._next < RESOLVED * self.now:
+                return self._stuck()
         return None
 
     @property
@@ -335,6 +338,18 @@ class TransientSolver:
         return self._outcome(False, f"At t = {t:.6g} s even a step of {size:.2g} s fails: "
                              f"{step.failed}{near}; try a smaller time.tolerance or a finer "
                              "mesh, and look at the last state in the output.")
+
+    def _stuck(self) -> Outcome:
+        """Steps that succeed but shrink to nothing would never get anywhere."""
+        lowest, place = self.model.system.lowest()
+        crushed = ""
+        if self.model.law is not None and place:
+            crushed = (f" (the lowest volume ratio J is {lowest:.2g}, near "
+                       f"{place_in_words(place, self.model.scales.length)})")
+        return self._outcome(False, f"At t = {self.now * self.unit:.6g} s the steps have shrunk to "
+                             f"{self._next * self.unit:.2g} s: Newton needs ever shorter ones"
+                             f"{crushed}; try a smaller load or a finer mesh, and look at the last "
+                             "state in the output.")
 
     def _outcome(self, done: bool, message: str, status: str = "") -> Outcome:
         """The state reached, with what has been counted."""
