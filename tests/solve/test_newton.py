@@ -68,6 +68,22 @@ def test_long_steps_are_shortened_to_the_limit_and_reach_the_same_state() -> Non
         assert free.norm() < 1e-9
 
 
+@pytest.mark.parametrize("permeability", ["1e-18 m^2", "1e-19 m^2"])
+def test_it_ends_when_all_that_is_left_is_rounding(permeability: str) -> None:
+    """A nearly undrained layer determines its mean pressure so weakly that it wanders for ever."""
+    scene = case1(40, 4, f"pores.permeability={permeability}")
+    with model_of(scene) as model, newton_on(model) as (watched, x):
+        model.dofs.set_scalar("v0", x, 0.05)
+        result = watched.newton.solve(x)
+        assert result.converged, result.why
+        sizes = watched.largest_updates()
+        assert watched.newton.tolerance < sizes[-1] < 1e-6, sizes
+        assert sizes[-1] > 0.7 * sizes[-2], sizes
+        for name, norm in watched.records[-1].residuals.items():
+            largest = max(r.residuals[name] for r in watched.records)
+            assert norm < 1e-9 * largest, name
+
+
 def test_each_iteration_is_reported_with_every_field() -> None:
     with model_of(case1(16, 3)) as model, newton_on(model) as (watched, x):
         model.dofs.set_scalar("v0", x, 0.05)
