@@ -13,6 +13,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from mpi4py import MPI
 from petsc4py import PETSc
 
 from porolub.solve.model import Model
@@ -27,9 +28,15 @@ SMALLEST_SHARE = 2e-3  # of load or friction, below which a ramp is given up
 
 @dataclass(frozen=True)
 class StartUp:
-    """Knobs of the start-up, in scaled time (one unit is the consolidation time of the layer)."""
+    """Knobs of the start-up, in scaled time (one unit is the consolidation time of the layer).
+
+    A layer that is nearly undrained meets the plane long before it consolidates: where the body
+    would move on by more than ``moved`` thicknesses in the first step, all steps are as much
+    shorter.
+    """
 
     first_step: float = 1e-4
+    moved: float = 0.01
     smallest_step: float = 1e-7
     steps: int = 400
     settled: float = 2e-3  # change per step below which steady Newton is tried
@@ -113,6 +120,12 @@ class Starter:
             if share >= 1.0 or step < SMALLEST_SHARE:
                 return result
 
+    def _body_speed(self) -> float:
+        """Of the fastest part of the body, thicknesses per unit time."""
+        v = self.model.operation.body_velocity(self.model.mesh.coordinates)
+        fastest = float(np.linalg.norm(v, axis=-1).max(initial=0.0))
+        return float(self.model.mesh.comm.allreduce(fastest, op=MPI.MAX))
+
     def physical(self, x: PETSc.Vec, settle: bool = False,
                  options: StartUp = StartUp()) -> NewtonResult:
         """Start-up in time from x, in place; ends with steady Newton.
@@ -124,7 +137,8 @@ class Starter:
         limits, self.newton.limits = self.newton.limits, dict(STEP_LIMIT)
         patience, self.newton.patience = self.newton.patience, PATIENCE
         self.newton.abort_below = 0.05
-        dt, t = options.first_step, 0.0
+        share = min(1.0, options.moved / max(options.first_step * self._body_speed(), 1e-300))
+        dt, smallest, t = share * options.first_step, share * options.smallest_step, 0.0
         result = NewtonResult(False, 0, "the start-up did not settle")
         for _ in range(options.steps):
             system.backward_euler(system.physical(dofs.to_local(x)), dt)
@@ -136,7 +150,7 @@ class Starter:
                 self.rejected += 1
                 dt *= 0.25
                 trial.destroy()
-                if dt < options.smallest_step:
+                if dt < smallest:
                     result = NewtonResult(False, 0, f"the start-up stalled at t = {t:.2g} "
                                           f"consolidation times: {step.why}", step.place)
                     break

@@ -256,7 +256,7 @@ class SteadySolver:
             result = starter.loaded(x)
         elif self.scene.pores is not None or self.scene.film is not None:
             log.info("%s: straight Newton failed (%s); starting up in time", name, result.why)
-            options = StartUp(first_step=3e-3, steps=60) if settle else StartUp()
+            options = StartUp(first_step=3e-3, moved=0.3, steps=60) if settle else StartUp()
             result = starter.physical(x, settle, options)
         else:
             log.info("%s: straight Newton failed (%s); ramping", name, result.why)

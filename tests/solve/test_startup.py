@@ -50,6 +50,19 @@ def test_it_settles_from_a_state_near_by() -> None:
         assert difference(model, x, y) < SAME
 
 
+@pytest.mark.parametrize("permeability", ["1e-18 m^2", "1e-19 m^2"])
+def test_its_steps_resolve_the_passage_of_a_nearly_undrained_layer(permeability: str) -> None:
+    """The layer consolidates in 10^3 and 10^4 s, and passes the contact in 0.1 s."""
+    scene = case1(40, 4, f"pores.permeability={permeability}", job="case1_bonded")
+    with model_of(scene) as model, newton_on(model) as (watched, _):
+        starter = Starter(model, watched.newton)
+        x = starter.zero(LIFTED)
+        started = starter.physical(x)
+        assert started.converged, started.why
+        assert model.system.rate == 0.0
+        assert watched.newton.solve(x, max_iterations=3).converged
+
+
 @pytest.mark.parametrize("steps", [1, 400], ids=["given up", "settled"])
 def test_the_operating_point_and_newton_are_given_back_as_they_were(steps: int) -> None:
     with model_of(case1(16, 3, "load={approach='40 um'}")) as model, \
