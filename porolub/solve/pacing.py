@@ -9,7 +9,7 @@ import numpy as np
 from porolub.scene.history import period_of
 
 EASY = 3.5  # Newton iterations that steps are to take on average, where Newton limits them
-STEPS_OF_A_PERIOD = 20  # at least
+STEPS_OF_A_PERIOD = 40  # at least; with 30 what follows a reversal still costs rejections
 SAME_STOP = 1e-9  # of the end: stops nearer than this are one
 
 
