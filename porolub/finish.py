@@ -67,7 +67,8 @@ def make_report(scene: Any, outcome: Outcome) -> Report | None:
     values = scalars(model, x)
     fields = gather_fields(model, x)
     surface = gather_surface(model, x)
-    state = gather_state(model, x)
+    reached = outcome.overall.get("time", 0.0)
+    state = gather_state(model, x, reached)
     outcome.clock.add("output", start)
     counts = _counts(model)
     comm = model.mesh.comm
@@ -88,7 +89,7 @@ def make_report(scene: Any, outcome: Outcome) -> Report | None:
         "peak_memory": memory, "versions": versions(), **outcome.overall,
     }
     step = {k: v for k, v in values.items() if isinstance(v, float)}
-    return Report(summary, fields, surface, outcome.newton, [StepRecord(0.0, step)], state)
+    return Report(summary, fields, surface, outcome.newton, [StepRecord(reached, step)], state)
 
 
 def _counts(model: Any) -> dict[str, int]:
