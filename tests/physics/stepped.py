@@ -101,7 +101,10 @@ def fixed(tables: dict[str, Any], count: int, **others: Any) -> Steps:
     """The same in ``count`` equal steps."""
     end = float(tables["time"]["end"].split()[0])
     time = {"first_step": f"{end / count!r} s", **tables["time"]}
-    return stepped({**tables, "time": time}, petsc="-ts_adapt_type none", **others)
+    run = stepped({**tables, "time": time}, petsc="-ts_adapt_type none", **others)
+    assert run.steps == count
+    assert not run.rejections
+    return run
 
 
 def _stepped(tables: dict[str, Any], look: Callable[[Look], Any], base_dir: Path | None,

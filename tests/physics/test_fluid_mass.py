@@ -1,9 +1,9 @@
 """Fluid over time, counted twice: as the program counts it and from displacements and flows alone.
 
-fluid_content and fluid_gained agree as well as Newton solves (to rounding where a last iteration
-leaves no more), whatever the steps do, because what is stored is what is differenced.  Counted independently: pores hold a (deformed area - area), a film the
-integral of its thickness, and what flows between them over time is the integral of in- and
-outflow, to the accuracy of the steps.
+fluid_content and fluid_gained agree as well as Newton solves, whatever the steps do, because what
+is stored is what is differenced.  Counted independently: pores hold a (deformed area - area), a
+film the integral of its thickness, and what flows between them over time is the integral of in-
+and outflow, to the accuracy of the steps.
 """
 
 from functools import cache

@@ -57,9 +57,8 @@ def error(order: int, count: int) -> float:
     """Largest error in the last of some periods of ``count`` equal steps, over the amplitude."""
     omega = SCALED / block.TAU
     period = 2.0 * np.pi / omega
-    tables = block.column(20, PERIODS * period / block.TAU, sine(omega), degree=2, order=order)
+    tables = block.column(32, PERIODS * period / block.TAU, sine(omega), degree=2, order=order)
     run = fixed(tables, PERIODS * count, look=block.settlement)
-    assert not run.rejections
     last = run["time"] > (PERIODS - 1) * period
     t, steady = run["time"][last], block.harmonic_response(omega)
     exact = np.imag(steady * np.exp(1j * omega * t)) + block.start_of_harmonic(t, omega)
@@ -69,7 +68,7 @@ def error(order: int, count: int) -> float:
 @pytest.mark.slow
 @pytest.mark.parametrize("order", [1, 2, 3])
 def test_orders_in_time(order: int) -> None:
-    errors = np.array([error(order, n) for n in (32, 64, 128)])
+    errors = np.array([error(order, n) for n in (48, 96, 192)])
     assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(np.full(2, order), abs=0.1), errors
 
 
@@ -81,18 +80,22 @@ def gentle_settlement(t: Array, omega: float) -> Array:
     return block.SETTLED * (1.0 - np.cos(omega * t) - held.sum(axis=0))
 
 
-@pytest.mark.parametrize(("order", "largest"), [(1, 0.025), (2, 4e-3), (3, 6e-4)])
+@pytest.mark.parametrize(("order", "largest"), [(1, 0.02), (2, 2e-3), (3, 2e-4)])
 def test_orders_from_rest(order: int, largest: float) -> None:
-    """A load that begins with no slope: the half step of order 1 at the start costs no order."""
+    """A load that begins with no slope: the half step of order 1 at the start costs no order.
+
+    It begins like t^2 and the settlement under the drained top like t^2.5, so the first steps
+    themselves err with order 2.5; the second half of the run is looked at.
+    """
     omega = SCALED / block.TAU
     gentle = sine(omega) | {"mean": f"{block.LOAD} Pa", "amplitude": f"{-block.LOAD} Pa",
                             "shape": "cosine"}
     end = 2.0 * np.pi / SCALED
     errors = []
-    for count in (32, 64):
-        run = fixed(block.column(20, end, gentle, degree=2, order=order), count,
+    for count in (48, 96):
+        run = fixed(block.column(32, end, gentle, degree=2, order=order), count,
                     look=block.settlement)
         off = np.abs(run.sight - gentle_settlement(run["time"], omega))
-        errors.append(off.max() / block.SETTLED)
-    assert np.log2(errors[0] / errors[1]) > order - 0.1, errors
+        errors.append(off[run["time"] > end * block.TAU / 2.0].max() / block.SETTLED)
+    assert np.log2(errors[0] / errors[1]) > order - 0.15, errors
     assert errors[0] < largest
