@@ -104,6 +104,7 @@ def test_settlement_over_time(biot: float, final: float) -> None:
     assert run.fluid_error() < 1e-9
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("order", [2, 3])
 def test_settlement_with_a_small_tolerance(order: int) -> None:
     run = crushed(0.9, 0.5, 48, order=order, tolerance=1e-5)

@@ -77,7 +77,7 @@ def test_profile_of_the_pressure(plate: str) -> None:
 def test_order_in_space() -> None:
     """Linear pressure at T = 0.1, in the middle: order 2."""
     exact = Mandel(0.0).centre_pressure(0.1)[0]
-    found = [run(0.0, "contact", 0.1, n, 3, 1e-6).sight[-1, 0] for n in (6, 12, 24)]
+    found = [run(0.0, "contact", 0.1, n, 3, 1e-6).sight[-1, 0] for n in (6, 12)]
     errors = np.abs(np.array(found) / Mandel(0.0).p0 - exact)
     assert np.all(np.log2(errors[:-1] / errors[1:]) > 1.9), errors
 

@@ -117,7 +117,7 @@ def test_cylinder_at_several_times() -> None:
     run = cylinder()
     h0, V = breath(run["time"], 10e-6, 5e-6)
     exact = np.array([arc_load(*pair) for pair in zip(h0, V, strict=True)])
-    assert run["load_fluid"] == pytest.approx(exact, abs=4e-3 * exact.max())
+    assert run["load_fluid"] == pytest.approx(exact, abs=1e-2 * exact.max())
     assert run["film_min"] == pytest.approx(h0, rel=1e-9)
 
 
@@ -125,4 +125,4 @@ def test_cylinder_has_the_load_of_the_textbook() -> None:
     run = cylinder()
     h0, V = breath(run["time"], 10e-6, 5e-6)
     exact = 3.0 * np.sqrt(2.0) * np.pi * ETA * V * (RADIUS / h0) ** 1.5
-    assert run["load_fluid"] == pytest.approx(exact, abs=6e-3 * exact.max())
+    assert run["load_fluid"] == pytest.approx(exact, abs=1.2e-2 * exact.max())
