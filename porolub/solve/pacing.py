@@ -10,7 +10,7 @@ from porolub.scene.history import period_of
 
 EASY = 3.5  # Newton iterations that steps are to take on average, where Newton limits them
 STEPS_OF_A_PERIOD = 40  # at least; with 30 what follows a reversal still costs rejections
-SAME_STOP = 1e-9  # of the end: stops nearer than this are one
+SAME_STOP = 1e-12  # of the time: stops nearer than this are one, but for rounding
 
 
 def ease(iterations: int) -> float:
@@ -44,7 +44,7 @@ def stops(scene: Any, unit: float) -> list[tuple[float, bool]]:
     found += [(t, True) for t in scene.kinks(0.0, end)]
     apart: list[tuple[float, bool]] = []
     for t, kink in sorted(found):
-        if apart and t - apart[-1][0] <= SAME_STOP * end:
-            kink = kink or apart.pop()[1]
-        apart.append((t, kink))
+        before = apart.pop() if apart and t - apart[-1][0] <= SAME_STOP * t else (t, False)
+        apart.append((t, kink or before[1]))
+    apart[-1] = end, apart[-1][1]
     return [(t / unit, kink) for t, kink in apart]
