@@ -77,7 +77,9 @@ def test_several_mistakes_are_one_line_each() -> None:
         (["chek", CASE1], "porolub: No such command 'chek'. Did you mean 'check'?"),
         (["check", CASE1, "--fast"], "porolub: No such option: --fast"),
         (["check", CASE1, "--set", "mesh.along=0"], "porolub: mesh.along = 0: the value must"),
-        (["run", CASE1, "--set", "time.end=5 s"], "porolub: transient scenes are not supported"),
+        (["run", CASE1, "--set", "time.end=5"], "porolub: time.end = 5: a plain number has no"),
+        (["restart"], "porolub: Missing argument 'DIR'."),
+        (["restart", "no/such/directory"], "porolub: no/such/directory/checkpoint.h5: there is no"),
         (["plot", "no/such/directory"], "porolub: no/such/directory: there is no such directory."),
     ],
 )
@@ -96,8 +98,9 @@ def test_check_exits_with_0() -> None:
 def test_help_names_the_commands_there_are() -> None:
     result = porolub("--help")
     assert result.returncode == 0
-    assert all(name in result.stdout for name in ("run", "check", "plot", "info"))
+    assert all(name in result.stdout for name in ("run", "check", "restart", "plot", "info"))
     assert "film=none" in porolub("check", "--help").stdout
+    assert "any number of ranks" in porolub("restart", "--help").stdout
 
 
 def test_info_shows_the_versions_of_all_that_takes_part() -> None:

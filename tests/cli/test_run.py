@@ -37,17 +37,17 @@ def calls(monkeypatch: pytest.MonkeyPatch) -> Calls:
     return calls
 
 
-def test_it_hands_on_scene_directory_options_and_path(calls: Calls) -> None:
+def test_it_hands_on_scene_directory_and_options(calls: Calls) -> None:
     options = ["--out", "here", "--petsc", "-ksp_view -log_view", "--quiet"]
     result = CliRunner().invoke(app, ["run", str(CASE1), *options, "--set", "mesh.along=10"])
     assert result.exit_code == 0
     scene = load_scene(CASE1, ["mesh.along=10"])
-    assert calls == [(scene, Path("here"), "-ksp_view -log_view", True, CASE1)]
+    assert calls == [(scene, Path("here"), "-ksp_view -log_view", True)]
 
 
 def test_the_results_go_beside_each_other_by_default(calls: Calls) -> None:
     CliRunner().invoke(app, ["run", str(CASE1)])
-    assert calls == [(load_scene(CASE1), Path("results/case1"), "", False, CASE1)]
+    assert calls == [(load_scene(CASE1), Path("results/case1"), "", False)]
 
 
 @pytest.mark.parametrize(
@@ -74,11 +74,10 @@ def test_a_defect_is_not_hidden(calls: Calls) -> None:
     assert isinstance(result.exception, ZeroDivisionError)
 
 
-def test_transient_scenes_are_refused_before_anything_is_computed(calls: Calls) -> None:
+def test_a_scene_with_time_is_handed_on_like_any_other(calls: Calls) -> None:
     result = CliRunner().invoke(app, ["run", str(CASE1), "--set", "time.end=5 s"])
-    assert result.exit_code == 2
-    assert "transient scenes are not supported by this version: remove [time]" in result.stderr
-    assert calls == []
+    assert result.exit_code == 0
+    assert calls[0][0].time.end == 5.0
 
 
 def test_plot_names_the_figures_it_drew(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
