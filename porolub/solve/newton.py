@@ -28,6 +28,7 @@ TOO_MANY = PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
 # Largest plausible update of one iteration, in thicknesses and moduli.
 LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03, "j": np.inf, "w": np.inf}
 SHORT = 0.4  # a step cut below this counts as strongly shortened
+STALE = 1e-3  # share of the tolerance that an iteration with an old matrix may leave
 NEAR, FAST = 1e-3, 0.3  # size of an update, and how it must shrink, to keep the matrix
 WANDERS, VANISHED = 1e-5, 1e-9  # size of updates, share of the largest residuals: see _rounding
 UNDETERMINED = 1e9  # an update of this size, scaled, comes from a singular matrix
@@ -88,6 +89,7 @@ class Newton:
         self._updates: dict[str, float] = {}
         self._damping, self._stalled, self._shortened = 1.0, 0, 0
         self._size = self._size_before = float("inf")  # of the last two updates, unshortened
+        self._stale = False  # whether the last of them came from the matrix of the one before
         self._largest: dict[str, float] = {}  # residual so far, by field
         self._previous_size = float("inf")
         self._solve_start: float | None = None
@@ -125,7 +127,8 @@ class Newton:
 
     def jacobian(self, snes: PETSc.SNES, x: PETSc.Vec, J: PETSc.Mat, P: PETSc.Mat) -> None:
         """dF/dx into P; left as it is, and its factors with it, where that will do."""
-        if self._may_reuse():
+        self._stale = self._may_reuse()
+        if self._stale:
             self.reused += 1
             self._solve_start = time.perf_counter()
             return
@@ -195,7 +198,7 @@ class Newton:
         if self._shortened > self.patience:
             self._why = "Newton's steps stay implausibly long"
             return DIVERGED
-        if self._damping == 1.0 and (size < self.tolerance or self._rounding(size, record)):
+        if self._damping == 1.0 and (self._close(size) or self._rounding(size, record)):
             return CONVERGED
         if iteration >= self.max_iterations:
             name, unit = self._worst()
@@ -203,6 +206,16 @@ class Newton:
                          f"changes by {size:.1e} {unit}")
             return TOO_MANY
         return GOES_ON
+
+    def _close(self, size: float) -> bool:
+        """Whether the error left is below the tolerance's square, roughly.
+
+        With a fresh matrix it is of the order of the square of the update; with an old one it is
+        the update times the rate of convergence.
+        """
+        if size >= self.tolerance or not self._stale:
+            return size < self.tolerance
+        return size * size < STALE * self.tolerance * self._size_before
 
     def _rounding(self, size: float, record: NewtonRecord) -> bool:
         """Whether the updates are rounding: small, no longer shrinking, of a residual that is gone.

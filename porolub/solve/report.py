@@ -62,7 +62,7 @@ class StepRecord:
     - in a transient run also ``time_step`` (s, that led here), ``order`` (of the BDF),
       ``newton_iterations`` and ``rejected_steps`` (of this step), ``speed`` (rad/s, or m/s of a
       sliding plane), ``load_applied`` (N/m or N), ``fluid_content`` (kg/m or kg: fluid in pores
-      and film beyond the undeformed layer's) and ``fluid_gained`` (kg/m or kg: what entered
+      and film beyond what they held at the start) and ``fluid_gained`` (kg/m or kg: what entered
       through all boundaries since the start, summed as the time scheme sums).
     """
 
