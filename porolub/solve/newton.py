@@ -28,7 +28,7 @@ TOO_MANY = PETSc.SNES.ConvergedReason.DIVERGED_MAX_IT
 # Largest plausible update of one iteration, in thicknesses and moduli.
 LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03, "j": np.inf, "w": np.inf}
 SHORT = 0.4  # a step cut below this counts as strongly shortened
-STALE = 1e-3  # share of the tolerance that an iteration with an old matrix may leave
+STALE = 1e-2  # share of the tolerance that an iteration with an old matrix may leave
 NEAR, FAST = 1e-3, 0.3  # size of an update, and how it must shrink, to keep the matrix
 WANDERS, VANISHED = 1e-5, 1e-9  # size of updates, share of the largest residuals: see _rounding
 UNDETERMINED = 1e9  # an update of this size, scaled, comes from a singular matrix

@@ -8,18 +8,18 @@ import numpy as np
 
 from porolub.scene.history import period_of
 
-EASY = 3.5  # Newton iterations that steps are to take on average, where Newton limits them
+EASY = 3.3  # Newton iterations that steps are to take on average, where Newton limits them
 STEPS_OF_A_PERIOD = 40  # at least; with 30 what follows a reversal still costs rejections
 SAME_STOP = 1e-12  # of the time: stops nearer than this are one, but for rounding
 
 
-def ease(iterations: int) -> float:
+def ease(iterations: float) -> float:
     """How much longer the next step may be, by how hard this one was for Newton.
 
     Steps that take more than EASY iterations cost more than two shorter ones, which are also
     more accurate and are rejected less.
     """
-    return float(np.clip((EASY / max(iterations, 1)) ** 1.5, 0.5, 2.0))
+    return float(np.clip((EASY / max(iterations, 1.0)) ** 1.5, 0.5, 2.0))
 
 
 def longest(scene: Any, unit: float) -> float:

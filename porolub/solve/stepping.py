@@ -31,6 +31,7 @@ Array = NDArray[np.float64]
 NEWTON_TOLERANCE = 1e-5  # scaled update at which Newton stops; the error left is of its square
 RIGID_TOLERANCE = 1e-7  # between rigid walls, where a film may be far thinner than a layer
 MAX_ITERATIONS = 12
+OLD_FACTORS_COST = 0.7  # counts as so much of an iteration that factorises
 PATIENCE = 3  # strongly shortened Newton steps, after which a shorter time step is better
 SMALLEST_STEP = 1e-10  # of the layer's own time and the end; below it a step that fails is given up
 GUESS = 0.8  # share of the straight extrapolation Newton starts from
@@ -55,15 +56,16 @@ class Rejection:
 @dataclass(frozen=True)
 class Step:
     """A step: ``time`` reached and ``size`` (scaled), BDF order, Newton iterations (those of
-    rejected attempts included) and those of the last attempt alone, rejections; ``failed``: why
-    it could not be done, and the place.
+    rejected attempts included); effort of the last attempt alone: its iterations, those with old
+    factors counted by what they cost; rejections; ``failed``: why it could not be done, and the
+    place.
     """
 
     time: float
     size: float
     order: int
     newton_iterations: int
-    last_iterations: int = 0
+    effort: float = 0.0
     rejected: tuple[Rejection, ...] = ()
     failed: str = ""
     place: Place | None = None
@@ -94,7 +96,7 @@ class TimeStepper:
         self._error_weights = model.dofs.vector()
         self._span = min(1.0, model.scene.time.end / model.scales.time)
         # of the step under way
-        self._stage, self._iterations = -np.inf, 0
+        self._stage, self._iterations, self._reused_before = -np.inf, 0, 0
         self._pending: Entry | None = None
         self._scheme: tuple[float, dict[str, Array]] = (0.0, {})  # rate, known of the last step
         self._rejected: list[Rejection] = []
@@ -161,16 +163,16 @@ class TimeStepper:
         if self.ts.getConvergedReason() < 0 or self._pending is None:
             last = rejected[-1]
             self._take_back()
-            return Step(last.time, last.size, order, self._iterations, 0, rejected, last.why,
+            return Step(last.time, last.size, order, self._iterations, 0.0, rejected, last.why,
                         self._place)
         entry, before = self._pending, self.lookback.entries[0].time
         self.lookback.accept(entry)
         self._scheme = self.model.system.rate, self.model.system.known
         self.sizes = self._sizes_of(self.x)
         PETSc.garbage_cleanup()
-        last_iterations = self.newton.snes.getIterationNumber()
-        return Step(entry.time, entry.time - before, order, self._iterations, last_iterations,
-                    rejected)
+        old = self.newton.reused - self._reused_before
+        effort = self.newton.snes.getIterationNumber() - old * (1.0 - OLD_FACTORS_COST)
+        return Step(entry.time, entry.time - before, order, self._iterations, effort, rejected)
 
     def _take_back(self) -> None:
         """After a step that failed: all is again as the last accepted one left it."""
@@ -225,7 +227,7 @@ class TimeStepper:
             now = self.lookback.entries[0].time
             self._rejected.append(Rejection(now, self._pending.time - now, TOO_INACCURATE))
             self._pending = None
-        self._stage = t
+        self._stage, self._reused_before = t, self.newton.reused
         drive(self.model, t * self.model.scales.time)
         half = self._is_half(t)
         rate, *others = self.lookback.weights(t, half)
