@@ -30,6 +30,7 @@ log = logging.getLogger(__name__)
 FIRST = 1e-3  # of the period or the end: the first step from a steady state
 SUDDEN = 1e-6  # of the layer's own time and the end: within it a load from rest is put on
 RESOLVED = 1e-12  # of the time reached; shorter steps are lost in rounding
+AWAY = -10.0  # thicknesses; a plane pulled off so far is gone in no time
 AT_A_KINK = 0.1  # of the step before: the first step after a kink
 LIFTED = {True: -10e-6, False: 0.0}  # m; where the plane starts from rest with a film, without
 NOBODY = Watch()
@@ -110,13 +111,15 @@ class TransientSolver:
             cut_short = size < self._next and not step.rejected
             self._next = max(self.stepper.next_size, self._next if cut_short else 0.0)
             if not fixed_steps():
-                self._next = min(self._next, step.size * ease(step.last_iterations))
+                self._next = min(self._next, step.size * ease(step.effort))
             self._accepted(step)
             why = self.stop(self.comm)
             if why:
                 return self._outcome(False, why, "interrupted")
             if self._next < RESOLVED * self.now:
                 return self._stuck()
+            if self._approach() < AWAY:
+                return self._pulled_off()
         return None
 
     @property
@@ -338,6 +341,22 @@ class TransientSolver:
         return self._outcome(False, f"At t = {t:.6g} s even a step of {size:.2g} s fails: "
                              f"{step.failed}{near}; try a smaller time.tolerance or a finer "
                              "mesh, and look at the last state in the output.")
+
+    def _approach(self) -> float:
+        """Of a plane that the load moves, in thicknesses."""
+        if "v0" not in self.model.dofs.fields:
+            return 0.0
+        return self.model.dofs.scalar_value("v0", self.stepper.x)
+
+    def _pulled_off(self) -> Outcome:
+        """A film resists a pull the less the thicker it is: its plane is gone in finite time."""
+        t = self.now * self.unit
+        away = -self._approach() * self.model.scales.length
+        unit = "N/m" if self.model.scales.dim == 2 else "N"
+        return self._outcome(False, f"At t = {t:.6g} s a load of {self.scene.load.at(t):.4g} "
+                             f"{unit} has pulled the plane {away * 1e3:.3g} mm off the layer and "
+                             "nothing holds it: load.force must press again sooner, or prescribe "
+                             "load.approach.")
 
     def _stuck(self) -> Outcome:
         """Steps that succeed but shrink to nothing would never get anywhere."""
