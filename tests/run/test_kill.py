@@ -41,7 +41,7 @@ def goes_on(directory: Path, expected: Output) -> None:
         ("in a step", 30),
         ("in a row", 7),
         ("half written", 6),
-        ("before it is there", 6),
+        pytest.param("before it is there", 6, marks=pytest.mark.slow),
         pytest.param("once it is there", 6, marks=pytest.mark.slow),
     ],
 )

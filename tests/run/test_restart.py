@@ -38,7 +38,7 @@ def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("porolub.io.plots.plot_directory", lambda directory: [])
 
 
-@pytest.fixture(scope="module", params=[1, 2, 3], ids="order {}".format)
+@pytest.fixture(scope="module")
 def kinked(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Output:
     """A run over two kinks of the load that nobody stops, for each order of the BDF."""
     with pytest.MonkeyPatch.context() as patch:
@@ -62,8 +62,16 @@ def rows_of(output: Output, place: str) -> int:
             "at a kink": at_kink, "after a kink": at_kink + 1, "later": at_kink + 3}[place]
 
 
-@pytest.mark.parametrize("place", ["at the start", "after the first step", "after the second",
-                                   "at a kink", "after a kink", "later"])
+PLACES = ["at the start", "after the first step", "after the second", "at a kink", "after a kink",
+          "later"]
+QUICK = {1: ["at a kink"], 2: PLACES, 3: ["after the first step", "at a kink", "later"]}
+
+
+@pytest.mark.parametrize(
+    ("kinked", "place"),
+    [pytest.param(order, place, marks=[] if place in QUICK[order] else pytest.mark.slow)
+     for order in (1, 2, 3) for place in PLACES],
+    indirect=["kinked"], ids=str)
 def test_the_steps_do_not_depend_on_a_stop(kinked: Output, tmp_path: Path, place: str) -> None:
     rows = rows_of(kinked, place)
     stopped(tmp_path, kinked.scene, ROW, rows)
@@ -198,20 +206,26 @@ def test_a_run_that_became_periodic_says_so_and_goes_further_if_asked(
     assert Output(tmp_path, found.scene).history[-1]["time"] == pytest.approx(reached + 0.01)
 
 
-@pytest.fixture
-def _petsc_options_of_its_own() -> Iterator[None]:
+def forget_options() -> None:
+    """As in a new process; PETSc's own call for it leaves them."""
     options: Any = PETSc.Options()
-    options.clear()
+    for name in options.getAll():
+        options.delValue(name)
+
+
+@pytest.fixture
+def _options_of_its_own() -> Iterator[None]:
+    forget_options()
     yield
-    options.clear()
+    forget_options()
 
 
-@pytest.mark.usefixtures("_petsc_options_of_its_own")
+@pytest.mark.usefixtures("_options_of_its_own")
 def test_the_petsc_options_go_on(tmp_path: Path) -> None:
     scene, options = small(), "-ts_adapt_safety 0.3"
     expected = run(tmp_path / "expected", scene, options)
     stopped(tmp_path / "stopped", scene, ROW, 6, options)
-    PETSc.Options().clear()
+    forget_options()
     restart(tmp_path / "stopped", quiet=True)
     same_history(expected.directory, tmp_path / "stopped")
     written = (tmp_path / "stopped" / "petsc.options").read_text().splitlines()

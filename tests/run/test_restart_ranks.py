@@ -56,6 +56,7 @@ def test_ranks_refuse_together(run_mpi, tmp_path: Path) -> None:
 
 
 @pytest.mark.mpi
+@pytest.mark.slow
 def test_a_damaged_history_stops_all_ranks(run_mpi, tmp_path: Path) -> None:
     run(tmp_path / "here", small("time.end=1 ms"))
     (tmp_path / "here" / "history.csv").write_text("no,history\n1,2\n")
