@@ -15,10 +15,13 @@ from hypothesis import settings
 settings.register_profile("porolub", deadline=None, derandomize=bool(os.environ.get("CI")))
 settings.load_profile("porolub")
 
-for variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "OMPI_MCA_rmaps_base_oversubscribe"):
+for variable in (
+    "OPENBLAS_NUM_THREADS",
+    "OMP_NUM_THREADS",
+    "OMPI_MCA_rmaps_base_oversubscribe",
+    "OMPI_MCA_mpi_yield_when_idle",  # ranks that wait leave the core to those that work
+):
     os.environ[variable] = "1"  # before NumPy is imported
-# ranks that wait leave the core to those that work: on a busy machine up to ten times faster
-os.environ["OMPI_MCA_mpi_yield_when_idle"] = "1"
 os.environ.setdefault("MPLBACKEND", "Agg")
 if os.geteuid() == 0:
     os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
