@@ -1,4 +1,7 @@
-"""How long the next step of a transient run may be, beside what its error allows. Times scaled."""
+"""How long the next step of a transient run may be, beside what its error allows. Times scaled.
+
+And when the next picture is due, by the clock alone, so that a restart does not matter.
+"""
 
 from __future__ import annotations
 
@@ -48,3 +51,9 @@ def stops(scene: Any, unit: float) -> list[tuple[float, bool]]:
         apart.append((t, kink or before[1]))
     apart[-1] = end, apart[-1][1]
     return [(t / unit, kink) for t, kink in apart]
+
+
+def next_picture(scene: Any, now: float) -> float:
+    """When the first picture after the time reached is due; both in s."""
+    apart = (scene.period or scene.time.end) / max(scene.time.frames, 1)
+    return float((int(now / apart * (1 + 1e-9)) + 1) * apart * (1 - 1e-9))

@@ -16,7 +16,7 @@ from porolub.solve.drive import drive
 from porolub.solve.gather import gather_fields, gather_surface
 from porolub.solve.newton import Newton
 from porolub.solve.options import fixed_steps, refuse_unused_together
-from porolub.solve.pacing import ease, landing, longest, stops
+from porolub.solve.pacing import ease, landing, longest, next_picture, stops
 from porolub.solve.periodic import difference_of_periods
 from porolub.solve.place import place_in_words
 from porolub.solve.report import FrameData, Resume, StepRecord
@@ -228,7 +228,7 @@ class TransientSolver:
         self.stepper.sizes = {n: totals[f"largest {n}"] for n in self.stepper.sizes}
         self.stepper.replay(entries)
         self._next = step / self.unit
-        self._frame_due = self._next_frame()
+        self._frame_due = next_picture(self.scene, self.now * self.unit)
         for name, kind in Totals.__annotations__.items():
             setattr(self.totals, name, (int if kind == "int" else float)(totals[name]))
 
@@ -251,7 +251,8 @@ class TransientSolver:
     def _record(self, d: Derived, step: Step) -> None:
         model, scene = self.model, self.scene
         values = {k: v for k, v in scalars_of(d).items() if isinstance(v, float)}
-        t = step.time * self.unit
+        t, end = step.time * self.unit, scene.time.end
+        t = end if abs(t - end) <= RESOLVED * end else t
         values |= {"time_step": step.size * self.unit, "order": float(step.order),
                    "newton_iterations": float(step.newton_iterations),
                    "rejected_steps": float(len(step.rejected))}
@@ -293,16 +294,9 @@ class TransientSolver:
         fields = gather_fields(self.model, self.stepper.x)
         surface = gather_surface(self.model, self.stepper.x)
         number, self._frame = self._frame, self._frame + 1
-        self._frame_due = self._next_frame()
+        self._frame_due = next_picture(self.scene, self.now * self.unit)
         frame = None if fields is None else FrameData(number, now, fields, surface)
         self.watch.frame(frame)
-
-    def _next_frame(self) -> float:
-        """When the first picture after the time reached is due, s."""
-        time = self.scene.time
-        apart = (self.scene.period or time.end) / max(time.frames, 1)
-        turn = int(self.now * self.unit / apart * (1 + 1e-9)) + 1
-        return float(turn * apart * (1 - 1e-9))
 
     def _repeats(self) -> bool:
         """Whether the period that has just ended repeats the one before."""

@@ -13,7 +13,7 @@ from porolub.io.checkpoint import read_checkpoint
 from porolub.io.directory import HISTORY_PLOTS, PLOTS
 from porolub.io.frames import read_frames
 from porolub.io.summary import KEYS
-from porolub.scene import load_scene
+from porolub.scene import load_scene, scene_from_dict
 from tests.run.output import Output
 from tests.run.program import porolub
 from tests.run.test_contract import FILES, TABLES, TEXTS
@@ -24,6 +24,7 @@ from tests.run.transient import (
     COUNTED,
     no_remains,
     options,
+    run,
     same_history,
     small,
 )
@@ -166,6 +167,21 @@ def test_a_run_from_rest_without_a_word(tmp_path: Path) -> None:
     assert (np.diff([row["approach"] for row in rows]) > 0.0).all()
     assert found.summary["mass_balance_error"] < BALANCED
     assert found.summary["load_balance_error"] < BALANCED
+
+
+def test_rounding_does_not_move_the_end(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps are counted in the layer's own time: 111 of them added up to 1 - 1e-16 s."""
+    monkeypatch.setattr("porolub.io.plots.plot_directory", lambda directory: [])
+    traction = {"mean": "1 kPa", "amplitude": "0.5 kPa", "frequency": "2 Hz", "shape": "sine"}
+    scene = scene_from_dict({
+        "geometry": {"shape": "block", "width": "4 mm", "thickness": "1 mm"},
+        "mesh": {"along": 2, "across": 2}, "time": {"end": "1 s"},
+        "solid": {"law": "linear", "shear_modulus": "0.5 MPa", "bulk_modulus": "2 MPa"},
+        "pores": {"biot": 0.9, "permeability": "1 um^3/mm", "viscosity": "1 mPa*s",
+                  "carry": False},
+        "boundary": {"top": {"traction": traction, "pressure": "0 Pa"}}})
+    found = run(tmp_path, scene)
+    assert found.history[-1]["time"] == found.summary["time"] == 1.0
 
 
 @pytest.mark.mpi

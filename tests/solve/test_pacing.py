@@ -5,7 +5,7 @@ import math
 import pytest
 
 from porolub.scene import Scene, scene_from_dict
-from porolub.solve.pacing import STEPS_OF_A_PERIOD, ease, landing, longest, stops
+from porolub.solve.pacing import STEPS_OF_A_PERIOD, ease, landing, longest, next_picture, stops
 
 UNIT = 0.25  # s
 
@@ -73,3 +73,10 @@ def test_easy_steps_grow_and_hard_ones_shrink_within_bounds() -> None:
     assert sorted(found, reverse=True) == found
     assert found[2] > 1.0 > found[3]
     assert found[4] == 0.5
+
+
+def test_pictures_are_due_by_the_clock() -> None:
+    of_a_period, of_the_run = scene(harmonic("2 Hz"), frames=5), scene("1 kN/m", frames=5)
+    for now, due in ((0.0, 0.1), (0.05, 0.1), (0.1 - 1e-16, 0.2), (0.1, 0.2), (0.31, 0.4)):
+        assert next_picture(of_a_period, now) == pytest.approx(due)
+        assert next_picture(of_the_run, 2 * now) == pytest.approx(2 * due)
