@@ -5,7 +5,7 @@ import signal
 import subprocess
 import sys
 import textwrap
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
@@ -89,3 +89,17 @@ def run_mpi(tmp_path: Path) -> RunMPI:
         return output
 
     return run
+
+
+@pytest.fixture(autouse=True)
+def _options_of_one_test_are_not_those_of_the_next() -> Iterator[None]:
+    """PETSc has one table of options a process; a test that sets some leaves it as it was."""
+    from petsc4py import PETSc
+
+    options = PETSc.Options()
+    before = options.getAll()
+    yield
+    for name in options.getAll():
+        options.delValue(name)
+    for name, value in before.items():
+        options.setValue(name, value)
