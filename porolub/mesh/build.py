@@ -1,6 +1,6 @@
 """From a scene to a distributed mesh."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from porolub.errors import SceneError
-from porolub.mesh.distribute import distributed
 from porolub.mesh.grading import graded_ticks, uniform_ticks
-from porolub.mesh.grid import grid
 from porolub.mesh.mesh import Mesh
 from porolub.mesh.raw import RawMesh, check_boundaries
 from porolub.mesh.read import read_mesh
 from porolub.mesh.shape import Shape, shape_from_scene
+from porolub.mesh.spread import spread
+from porolub.mesh.structured import structured
 
 Array = NDArray[np.float64]
 STANDARD = ("lubricated", "bone", "inlet", "outlet")
@@ -36,7 +36,9 @@ def build_mesh(
     surface_ratio: float = 1.0,
     degree: int | None = None,
 ) -> Mesh:
-    """Build the scene's mesh on rank 0 through gmsh and distribute it. Collective.
+    """Build the scene's mesh, distributed over the ranks. Collective.
+
+    Of a structured shape each rank builds its own part; a file is read on rank 0.
 
     Lengths of the scene (m) are divided by `length_scale`; `edges`, `edge_size` and
     `edge_band` are in that mesh unit. All keywords but `length_scale` and `degree` are for
@@ -51,26 +53,37 @@ def build_mesh(
     """
     comm = comm.tompi4py() if isinstance(comm, PETSc.Comm) else comm
     degree = scene.mesh.degree if degree is None else degree
-    shape = None
-    if scene.geometry.shape != "file":
-        shape = shape_from_scene(scene, length_scale)
-    raw: RawMesh | None = None
-    result: tuple[Array, ...] | SceneError = ()
+    if scene.geometry.shape == "file":
+        return spread(_from_rank_0(comm, lambda: _file_mesh(scene, length_scale)), comm, degree)
+    shape = shape_from_scene(scene, length_scale)
+    triangles = scene.mesh.element == "triangle"
+    if triangles and shape.dim == 3:
+        raise SceneError(
+            'mesh.element = "triangle" does not fit scene.dimension = 3; allowed there: quad.'
+        )
+    counts = along or scene.mesh.along, across or scene.mesh.across, scene.mesh.deep
+    near = () if edges is None else tuple(edges)
+    ticks: tuple[Array, ...] | None = None
+    if comm.rank == 0:  # to the last bit the same on all ranks; warnings are logged once
+        ticks = _ticks(shape, counts, near, edge_size, edge_band, surface_ratio)
+    ticks = comm.bcast(ticks)
+    assert ticks is not None
+    return structured(shape, ticks, comm, degree, triangles=triangles)
+
+
+def _from_rank_0(comm: MPI.Intracomm, make: Callable[[], RawMesh]) -> RawMesh | None:
+    """What rank 0 makes, None elsewhere; its SceneError is raised on all ranks."""
+    made: RawMesh | None = None
+    problem: SceneError | None = None
     if comm.rank == 0:
         try:
-            ticks: tuple[Array, ...] = ()
-            if shape is not None:
-                counts = along or scene.mesh.along, across or scene.mesh.across, scene.mesh.deep
-                near = () if edges is None else tuple(edges)
-                ticks = _ticks(shape, counts, near, edge_size, edge_band, surface_ratio)
-            raw = _raw_mesh(scene, shape, ticks, length_scale)
-            result = ticks
+            made = make()
         except SceneError as error:
-            result = error
-    result = comm.bcast(result)
-    if isinstance(result, SceneError):
-        raise result
-    return distributed(raw, comm, degree, shape, result)
+            problem = error
+    problem = comm.bcast(problem)
+    if problem is not None:
+        raise problem
+    return made
 
 
 def _ticks(
@@ -90,16 +103,7 @@ def _ticks(
     return ticks if shape.dim == 2 else (*ticks, uniform_ticks(counts[2]))
 
 
-def _raw_mesh(
-    scene: Any, shape: Shape | None, ticks: Sequence[Array], length_scale: float
-) -> RawMesh:
-    if shape is not None:
-        triangles = scene.mesh.element == "triangle"
-        if triangles and shape.dim == 3:
-            raise SceneError(
-                'mesh.element = "triangle" does not fit scene.dimension = 3; allowed there: quad.'
-            )
-        return grid(shape, ticks, triangles=triangles)
+def _file_mesh(scene: Any, length_scale: float) -> RawMesh:
     required = set(getattr(scene, "boundary", ()))
     if getattr(scene, "film", None) or getattr(scene, "contact", None) or not required:
         required.update(STANDARD)

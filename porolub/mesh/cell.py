@@ -14,10 +14,8 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Cell:
-    """A reference cell and how PETSc's closure of it maps onto our order.
+    """A reference cell (in 2D the edges are the faces).
 
-    `plex_vertices[i]` is the place of our vertex i among the vertices of the DMPlex closure;
-    likewise `plex_edges` and `plex_faces` (faces only in 3D; in 2D the edges are the faces).
     `mirror` lists the vertices in an order that turns the cell's orientation round.
     """
 
@@ -27,11 +25,7 @@ class Cell:
     edges: tuple[tuple[int, int], ...]
     faces: tuple[tuple[int, ...], ...]
     tensor: bool  # quads and hexahedra: faces and centre carry a node of degree 2
-    gmsh: int  # gmsh's number of the first-order element
     mirror: tuple[int, ...]
-    plex_vertices: tuple[int, ...]
-    plex_edges: tuple[int, ...]
-    plex_faces: tuple[int, ...]
 
     def nodes(self, degree: int) -> int:
         """Nodes of one cell for Lagrange elements of degree 1 or 2."""
@@ -75,11 +69,7 @@ QUAD = Cell(
     edges=((0, 1), (1, 2), (2, 3), (3, 0)),
     faces=((0, 1), (1, 2), (2, 3), (3, 0)),
     tensor=True,
-    gmsh=3,
     mirror=(0, 3, 2, 1),
-    plex_vertices=(0, 1, 2, 3),
-    plex_edges=(0, 1, 2, 3),
-    plex_faces=(),
 )
 
 TRIANGLE = Cell(
@@ -89,14 +79,9 @@ TRIANGLE = Cell(
     edges=((0, 1), (1, 2), (2, 0)),
     faces=((0, 1), (1, 2), (2, 0)),
     tensor=False,
-    gmsh=2,
     mirror=(0, 2, 1),
-    plex_vertices=(0, 1, 2),
-    plex_edges=(0, 1, 2),
-    plex_faces=(),
 )
 
-# PETSc turns hexahedra and tetrahedra round on reading: its bottom face runs clockwise.
 HEX = Cell(
     name="hex",
     dim=3,
@@ -107,11 +92,7 @@ HEX = Cell(
     ),
     faces=((0, 4, 7, 3), (1, 2, 6, 5), (0, 1, 5, 4), (2, 3, 7, 6), (0, 3, 2, 1), (4, 5, 6, 7)),
     tensor=True,
-    gmsh=5,
     mirror=(0, 3, 2, 1, 4, 7, 6, 5),
-    plex_vertices=(0, 3, 2, 1, 4, 5, 6, 7),
-    plex_edges=(3, 2, 1, 0, 4, 5, 6, 7, 9, 8, 11, 10),
-    plex_faces=(5, 4, 2, 3, 0, 1),
 )
 
 TET = Cell(
@@ -121,13 +102,7 @@ TET = Cell(
     edges=((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3)),
     faces=((1, 2, 3), (0, 3, 2), (0, 1, 3), (0, 2, 1)),
     tensor=False,
-    gmsh=4,
     mirror=(0, 2, 1, 3),
-    plex_vertices=(1, 0, 2, 3),
-    plex_edges=(0, 2, 1, 4, 3, 5),
-    plex_faces=(2, 3, 1, 0),
 )
 
 CELLS = {cell.name: cell for cell in (QUAD, TRIANGLE, HEX, TET)}
-FACET_GMSH = {"quad": 1, "triangle": 1, "hex": 3, "tet": 2}
-"""gmsh's number of the first-order element of a cell's faces."""

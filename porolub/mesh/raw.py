@@ -1,4 +1,4 @@
-"""A mesh as plain arrays on one rank, before PETSc sees it."""
+"""A mesh as plain arrays on one rank, before it is distributed."""
 
 from dataclasses import dataclass, replace
 
@@ -64,11 +64,22 @@ def face_keys(facets: Index) -> Index:
     return np.sort(np.asarray(facets, dtype=np.int64), axis=1)
 
 
+def distinct_rows(rows: Index) -> tuple[Index, Index]:
+    """The distinct rows, sorted, and the place of each row among them."""
+    if not len(rows):
+        return rows, np.zeros(0, dtype=np.int64)
+    order = np.lexsort(rows.T[::-1])
+    ordered = rows[order]
+    new = np.concatenate([[True], (ordered[1:] != ordered[:-1]).any(axis=1)])
+    place = np.empty(len(rows), dtype=np.int64)
+    place[order] = np.cumsum(new) - 1
+    return ordered[new], place
+
+
 def match_rows(table: Index, rows: Index) -> Index:
     """Position in `table` (distinct rows) of each row of `rows`; -1 where it is not there."""
-    both, inverse = np.unique(np.vstack([table, rows]), axis=0, return_inverse=True)
+    both, inverse = distinct_rows(np.vstack([table, rows]))
     place = np.full(len(both), -1, dtype=np.int64)
-    inverse = inverse.reshape(-1)
     place[inverse[: len(table)]] = np.arange(len(table))
     return place[inverse[len(table) :]]
 
@@ -76,8 +87,8 @@ def match_rows(table: Index, rows: Index) -> Index:
 def check_boundaries(raw: RawMesh) -> None:
     """Raises SceneError unless every boundary facet is outside and in one boundary only."""
     faces = np.vstack([raw.cells[:, list(face)] for face in raw.cell.faces])
-    distinct, times = np.unique(face_keys(faces), axis=0, return_counts=True)
-    outer = distinct[times == 1]
+    distinct, place = distinct_rows(face_keys(faces))
+    outer = distinct[np.bincount(place) == 1]
     owner = np.full(len(outer), -1)
     for number, (name, facets) in enumerate(raw.boundaries.items()):
         if facets.shape[1] != outer.shape[1]:

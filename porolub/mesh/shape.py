@@ -88,7 +88,8 @@ class Sector(Shape):
     The lubricated surface is the outer arc, lowest at the origin: the point at angle t and
     radius r is (r sin t, R0 - r cos t), |t| <= half_angle. In 3D z runs over
     [-width/2, width/2]; a `crown_radius` c lowers the radius to R0(z) = R0 - z^2 / (2 c) at
-    constant thickness.
+    constant thickness. `half` names the end that is the middle plane: z runs over [0, width/2]
+    with front, over [-width/2, 0] with back.
     """
 
     outer_radius: float
@@ -96,6 +97,7 @@ class Sector(Shape):
     half_angle: float
     width: float | None = None
     crown_radius: float | None = None
+    half: str | None = None
 
     lubricated = "lubricated"
     bone = "bone"
@@ -112,6 +114,13 @@ class Sector(Shape):
     def boundaries(self) -> tuple[str, ...]:  # type: ignore[override]
         return ("inlet", "outlet", "bone", "lubricated", "front", "back")[: 2 * self.dim]
 
+    @property
+    def _ends(self) -> tuple[float, float]:
+        """z of front and back."""
+        width = self.width or 0.0
+        low = 0.0 if self.half == "front" else -width / 2
+        return low, 0.0 if self.half == "back" else width / 2
+
     def _drop(self, z: Array) -> Array:
         """Radius lost to the crown at z."""
         return z * z / (2 * self.crown_radius) if self.crown_radius else np.zeros_like(z)
@@ -120,7 +129,8 @@ class Sector(Shape):
         logical = np.asarray(logical, dtype=float)
         angle = self.half_angle * (2 * logical[:, 0] - 1)
         inward = self.thickness * (1 - logical[:, 1])
-        z = None if self.width is None else self.width * (logical[:, 2] - 0.5)
+        front, back = self._ends
+        z = None if self.width is None else front + (back - front) * logical[:, 2]
         if z is not None:
             inward = inward + self._drop(z)
         radius = self.outer_radius - inward
@@ -139,7 +149,8 @@ class Sector(Shape):
             return np.column_stack([*columns, 1 - inward / self.thickness])
         z = points[:, 2]
         across = 1 - (inward - self._drop(z)) / self.thickness
-        return np.column_stack([*columns, across, z / self.width + 0.5])
+        front, back = self._ends
+        return np.column_stack([*columns, across, (z - front) / (back - front)])
 
 
 def shape_from_scene(scene: Any, length_scale: float) -> Shape:
@@ -173,6 +184,7 @@ def shape_from_scene(scene: Any, length_scale: float) -> Shape:
             float(geometry.half_angle),
             needed("width"),
             scaled("crown_radius"),
+            getattr(geometry, "half", None),
         )
     raise SceneError(
         f"geometry.shape = '{kind}' does not exist in {dimension}D: "

@@ -206,7 +206,6 @@ class SteadySolver:
             return float(stated)
         mesh = build_mesh(self.scene, self.comm)
         thickness = typical_thickness(mesh, lubricated_name(self.scene))
-        mesh.destroy()
         return thickness
 
     def model(self, edges: tuple[float, ...] = ()) -> Model:
@@ -296,7 +295,6 @@ class SteadySolver:
 def _free(model: Model, x: PETSc.Vec) -> None:
     x.destroy()
     model.destroy()
-    model.mesh.destroy()
 
 
 def contact_edges(model: Model, x: PETSc.Vec) -> tuple[float, ...]:

@@ -47,7 +47,6 @@ def main(case: str, path: str, output: str) -> None:
             ):
                 assert set(natural) & whole == set(listed), f"{name} incomplete"
         np.savez(output, **{key: np.concatenate(value) for key, value in everything.items()})
-    mesh.destroy()
 
 
 main(*sys.argv[1:])
