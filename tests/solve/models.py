@@ -52,7 +52,6 @@ def model_of(scene: Scene, comm: MPI.Intracomm = MPI.COMM_SELF, **mesh: Any) -> 
         yield model
     finally:
         model.destroy()
-        built.destroy()
 
 
 class Watched:
