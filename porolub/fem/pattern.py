@@ -8,13 +8,57 @@ from contextlib import contextmanager
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
-from scipy.sparse import coo_array
+from scipy.sparse import csr_array
 
+from porolub.errors import SolveError
 from porolub.fem import coo, kernels
 from porolub.fem.dofs import Dofs
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
+
+
+ENTRIES_AT_A_TIME = 1 << 20
+
+
+def _incidence(dofs: list[Ints], size: int) -> csr_array:
+    """(entities, size) True where a dof belongs to an entity; dofs (ne, n) each, -1: none."""
+    counts = np.concatenate([(d >= 0).sum(axis=1) for d in dofs])
+    indptr = np.concatenate([[0], np.cumsum(counts)]).astype(np.int32)
+    indices = np.concatenate([d[d >= 0] for d in dofs])
+    return csr_array((np.ones(len(indices), bool), indices, indptr), shape=(len(counts), size))
+
+
+def _union(blocks: list[tuple[Ints, Ints]], size: int) -> csr_array:
+    """All pairs of a row and a column that an entity joins, once each, columns sorted.
+
+    One product of incidences: no list of all entities' entries is ever made.
+    """
+    rows = _incidence([i for i, _ in blocks], size)
+    pairs = (rows.T.tocsr() @ _incidence([j for _, j in blocks], size)).tocsr()
+    pairs.sort_indices()
+    return pairs
+
+
+def _with_components(nodes: csr_array, width: Ints, single: NDArray[np.bool_]
+                     ) -> tuple[Ints, Ints]:
+    """indptr and indices with the first columns of nodes widened to all their components.
+
+    The rows ``single`` stay as they are.
+    """
+    widths = width[nodes.indices]
+    widths[np.repeat(single, np.diff(nodes.indptr))] = 1
+    ends = np.concatenate([[0], np.cumsum(widths, dtype=np.int64)])
+    if ends[-1] > np.iinfo(np.int32).max:
+        raise SolveError("The matrix of one rank has more than 2^31 entries: use more ranks.")
+    indices = np.empty(ends[-1], np.int32)
+    for start in range(0, len(widths), ENTRIES_AT_A_TIME):
+        part = slice(start, start + ENTRIES_AT_A_TIME)
+        many = widths[part]
+        first, last = ends[start], ends[start + len(many)]
+        place = np.arange(first, last) - np.repeat(ends[start:start + len(many)], many)
+        indices[first:last] = np.repeat(nodes.indices[part], many) + place
+    return ends[nodes.indptr].astype(np.int32), indices
 
 
 class Pattern:
@@ -33,22 +77,14 @@ class Pattern:
         """
         self._dofs = dofs
         diagonal = fixed[dofs.owned[fixed]].astype(np.int32)
-        rows, cols = [diagonal], [diagonal]
-        for i, j, components in blocks:
-            shape = (*i.shape, j.shape[1])
-            row, col = np.broadcast_to(i[:, :, None], shape), np.broadcast_to(j[:, None], shape)
-            present = (row >= 0) & (col >= 0)
-            for k in range(components):
-                rows.append(row[present])
-                cols.append(col[present] + np.int32(k))
-        row, col = np.concatenate(rows), np.concatenate(cols)
-        size = dofs.size_local
-        csr = coo_array((np.ones(len(row), np.int8), (row, col)), shape=(size, size)).tocsr()
-        csr.sort_indices()
-        self.indptr = csr.indptr.astype(np.int32)
-        self.indices = csr.indices.astype(np.int32)
-        is_fixed = np.zeros(size, bool)
+        nodes = _union([*((i, j) for i, j, _ in blocks), (diagonal[:, None], diagonal[:, None])],
+                       dofs.size_local)
+        width = np.ones(dofs.size_local, np.int32)  # columns that follow from a node's first one
+        for _, j, components in blocks:
+            width[j[j >= 0]] = components
+        is_fixed = np.zeros(dofs.size_local, bool)
         is_fixed[fixed] = True
+        self.indptr, self.indices = _with_components(nodes, width, is_fixed)
         self._zero = np.flatnonzero(is_fixed[self.indices])
         self._one = self.slots(diagonal[:, None], diagonal[:, None]).ravel()
 
