@@ -30,30 +30,40 @@ class Constraints:
     frame: Array
 
 
-def node_frame(directions: list[Array], values: list[float], where: str) -> tuple[Array, Array]:
-    """Frame (dim, dim) and the fixed leading components for one node.
+DEPENDENT = 1e-6  # of a unit direction, what is left of it beside the others
+CONTRADICTION = 1e-9
 
-    Raises SceneError when two boundaries demand contradicting displacements.
+
+def node_frames(directions: Array, values: Array) -> tuple[Array, Array, Array]:
+    """Frames for n nodes with m conditions each: u . directions[:, k] = values[:, k].
+
+    directions: (n, m, dim) of unit length; values: (n, m).  Returns the frames (n, dim, dim),
+    the components (n, dim) along their axes, NaN where free, and (n,) whether the conditions of a
+    node contradict each other.
     """
-    dim = len(directions[0])
-    axes: list[Array] = []
-    components: list[float] = []
-    for d, b in zip(directions, values, strict=True):
-        along = np.array([a @ d for a in axes])
-        rest = d - sum((c * a for c, a in zip(along, axes, strict=True)), np.zeros(dim))
-        size = float(np.linalg.norm(rest))
-        remainder = b - float(along @ np.array(components)) if axes else b
-        if size > 1e-6:
-            axes.append(rest / size)
-            components.append(remainder / size)
-        elif abs(remainder) > 1e-9 * max(1.0, abs(b)):
-            raise SceneError(f"Boundary conditions contradict each other {where}.")
-    fixed = np.array(components)
-    basis = np.array(axes)
-    if len(axes) < dim:  # complete to an orthonormal frame
-        q, _ = np.linalg.qr(np.vstack([basis, np.eye(dim)]).T)
-        basis = np.vstack([basis, q[:, len(axes):dim].T])
-    return basis.T, fixed
+    n, _, dim = directions.shape
+    axes, components = np.zeros((n, dim, dim)), np.full((n, dim), np.nan)
+    count = np.zeros(n, dtype=np.int64)
+    wrong = np.zeros(n, bool)
+    for d, b in zip(directions.swapaxes(0, 1), values.T, strict=True):
+        along = np.einsum("nki,ni->nk", axes, d)  # zero for axes not there yet
+        rest = d - np.einsum("nk,nki->ni", along, axes)
+        size = np.linalg.norm(rest, axis=1)
+        remainder = b - np.einsum("nk,nk->n", along, np.nan_to_num(components))
+        new = np.flatnonzero((size > DEPENDENT) & (count < dim))
+        axes[new, count[new]] = rest[new] / size[new, None]
+        components[new, count[new]] = remainder[new] / size[new]
+        count[new] += 1
+        repeated = np.ones(n, bool)
+        repeated[new] = False
+        wrong |= repeated & (np.abs(remainder) > CONTRADICTION * np.maximum(1.0, np.abs(b)))
+    for given in range(1, dim):  # complete to an orthonormal frame
+        some = np.flatnonzero(count == given)
+        basis = axes[some, :given]
+        unit = np.broadcast_to(np.eye(dim), (len(some), dim, dim))
+        q, _ = np.linalg.qr(np.concatenate([basis, unit], axis=1).swapaxes(1, 2))
+        axes[some, given:] = q[:, :, given:dim].swapaxes(1, 2)
+    return axes.swapaxes(1, 2), components, wrong
 
 
 class ConstraintBuilder:
@@ -61,36 +71,52 @@ class ConstraintBuilder:
 
     def __init__(self, dofs: Dofs) -> None:
         self.dofs = dofs
-        self._directions: dict[int, list[tuple[Array, float]]] = {}
-        self._scalars: dict[int, float] = {}
+        self._directions: list[tuple[NDArray[np.int64], Array, Array]] = []
+        self._scalars: list[tuple[NDArray[np.int64], Array]] = []
 
     def direction(self, nodes: NDArray[np.int64], directions: Array, value: float) -> None:
         """u . direction = value at nodes (k,), directions (k, dim) of unit length."""
-        for n, d in zip(nodes, directions, strict=True):
-            self._directions.setdefault(int(n), []).append((d, value))
+        self._directions.append((nodes, np.asarray(directions), np.full(len(nodes), value)))
 
     def scalar(self, field: str, nodes: NDArray[np.int64], value: float) -> None:
-        """A one-component field equals value at nodes where it lives."""
-        base = self.dofs.base[field][nodes]
-        self._scalars.update({int(b): value for b in base[base >= 0]})
+        """A one-component field equals value at nodes where it lives; the last word counts."""
+        base = self.dofs.base[field][nodes].astype(np.int64)
+        base = base[base >= 0]
+        self._scalars.append((base, np.full(len(base), value)))
 
     def build(self) -> Constraints:
-        fixed, values, rotated, frames = [], [], [], []
-        for n, conditions in sorted(self._directions.items()):
-            base = int(self.dofs.base["u"][n])
-            if base < 0:
-                continue
-            X = ", ".join(f"{x:.4g}" for x in self.dofs.mesh.coordinates[n])
-            frame, components = node_frame([c[0] for c in conditions], [c[1] for c in conditions],
-                                           f"at the node ({X})")
-            fixed += [base + k for k in range(len(components))]
-            values += list(components)
-            if not np.allclose(frame, np.eye(len(frame)), atol=1e-14):
-                rotated.append(n)
-                frames.append(frame)
-        fixed += list(self._scalars)
-        values += list(self._scalars.values())
+        """Raises SceneError when boundaries demand contradicting displacements of a node."""
         dim = self.dofs.mesh.dim
-        return Constraints(np.array(fixed, dtype=np.int64), np.array(values, dtype=float),
-                           np.array(rotated, dtype=np.int64),
-                           np.array(frames, dtype=float).reshape(-1, dim, dim))
+        nodes, frames, components = self._frames()
+        held = ~np.isnan(components)
+        base = self.dofs.base["u"][nodes].astype(np.int64) if len(nodes) else nodes
+        fixed = [(base[:, None] + np.arange(dim))[held]]
+        values = [components[held]]
+        if self._scalars:
+            dof, value = (np.concatenate(c) for c in zip(*self._scalars, strict=True))
+            last, place = np.unique(dof[::-1], return_index=True)
+            fixed.append(last)
+            values.append(value[::-1][place])
+        turned = (np.abs(frames - np.eye(dim)) > 1e-14).any(axis=(1, 2))
+        return Constraints(np.concatenate(fixed), np.concatenate(values), nodes[turned],
+                           frames[turned])
+
+    def _frames(self) -> tuple[NDArray[np.int64], Array, Array]:
+        """Nodes (n,) with conditions on u, ascending, their frames and components."""
+        dim = self.dofs.mesh.dim
+        if not self._directions:
+            return np.zeros(0, np.int64), np.zeros((0, dim, dim)), np.zeros((0, dim))
+        node, direction, value = (np.concatenate(c) for c in zip(*self._directions, strict=True))
+        there = np.flatnonzero(self.dofs.base["u"][node] >= 0)
+        order = there[np.argsort(node[there], kind="stable")]
+        nodes, first, many = np.unique(node[order], return_index=True, return_counts=True)
+        frames, components = np.empty((len(nodes), dim, dim)), np.empty((len(nodes), dim))
+        for m in np.unique(many):
+            of = np.flatnonzero(many == m)
+            rows = order[first[of][:, None] + np.arange(m)]
+            frames[of], components[of], wrong = node_frames(direction[rows], value[rows])
+            if wrong.any():
+                place = self.dofs.mesh.coordinates[nodes[of[wrong.argmax()]]]
+                X = ", ".join(f"{x:.4g}" for x in place)
+                raise SceneError(f"Boundary conditions contradict each other at the node ({X}).")
+        return nodes.astype(np.int64), frames, components
