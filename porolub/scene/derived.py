@@ -12,6 +12,7 @@ U d / c over the thickness d, and an outlet boundary layer of thickness c / U.
 
 from dataclasses import dataclass
 
+from porolub.scene.directions import unit_vector
 from porolub.scene.geometry import Arc, Block
 from porolub.scene.scene import Scene
 
@@ -57,4 +58,8 @@ def surface_speed(scene: Scene) -> float | None:
     speed = abs(scene.motion.at(0.0))
     if scene.motion.kind == "sliding":
         return speed
-    return speed * scene.geometry.outer_radius if isinstance(scene.geometry, Arc) else None
+    shape, motion = scene.geometry, scene.motion
+    if not isinstance(shape, Arc) or motion.centre is not None:
+        return None
+    about_own_axis = abs(unit_vector(motion.axis, 3)[2]) > 1.0 - 1e-9
+    return speed * shape.outer_radius if about_own_axis else None

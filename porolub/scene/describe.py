@@ -1,6 +1,8 @@
 """Quantities and histories in words, for reports and messages."""
 
+import json
 import math
+from typing import Any
 
 from porolub.scene.gait import Gait
 from porolub.scene.harmonic import Harmonic
@@ -15,6 +17,19 @@ def readable(value: float, unit: str) -> str:
     """Write an SI value with a prefix, for instance ``58.2 um``."""
     factor, prefixed = _scaled(value, unit)
     return f"{value / factor:.4g} {prefixed}"
+
+
+def toml_value(value: Any) -> str:
+    """Write a value as it stands in a TOML file, shortened if it is long."""
+    if isinstance(value, dict):
+        text = "{" + ", ".join(f"{k} = {toml_value(v)}" for k, v in value.items()) + "}"
+    elif isinstance(value, list | tuple):
+        text = "[" + ", ".join(toml_value(v) for v in value) + "]"
+    elif isinstance(value, bool | str):
+        text = json.dumps(value, ensure_ascii=False)
+    else:
+        text = str(value)
+    return text if len(text) <= 80 else text[:77] + "..."
 
 
 def describe(history: float | History, unit: str) -> str:

@@ -7,9 +7,19 @@ Tables = dict[str, Any]
 
 def with_what_follows(tables: Tables) -> Tables:
     """Return the tables of a scene file with the defaults that follow from others filled in."""
-    for follow in (_entering, _start, _approach):
+    for follow in (_symmetry, _entering, _start, _approach):
         tables = follow(tables)
     return tables
+
+
+def _symmetry(tables: Tables) -> Tables:
+    """A cuboid and a straight barrel are slices of something long; a crown has real ends."""
+    header, shape = tables.get("scene", {}), tables.get("geometry", {})
+    solid = isinstance(header, dict) and header.get("dimension", 2) == 3
+    straight = isinstance(shape, dict) and shape.get("shape") in ("block", "barrel")
+    if not solid or not straight or "crown_radius" in shape:
+        return tables
+    return _filled(tables, "geometry", "symmetry", ["front", "back"])
 
 
 def _entering(tables: Tables) -> Tables:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal, Self
 from pydantic import Field, StrictBool, field_validator, model_validator
 
 from porolub.scene.base import Section, broken, refused
+from porolub.scene.directions import Direction
 from porolub.scene.histories import (
     AngularSpeedHistory,
     ForceHistory,
@@ -12,7 +13,7 @@ from porolub.scene.histories import (
     SpeedHistory,
 )
 from porolub.scene.history import History, value_at
-from porolub.scene.units import NUMBER, PositiveSpeed, Quantity
+from porolub.scene.units import NUMBER, Length, PositiveSpeed, Quantity
 
 Friction = Annotated[float, Quantity(NUMBER, at_least=0)]
 
@@ -33,10 +34,17 @@ class Contact(Section):
 
 
 class Rotation(Section):
-    """The body rotates about its axis; ``speed`` in rad/s, anticlockwise positive."""
+    """The body rotates about its axis; ``speed`` in rad/s, anticlockwise positive.
+
+    v = speed ``axis`` x (X - ``centre``), with a point of the axis in m, one number for each
+    dimension. Left out, the centre is that of the shape; of a mesh file that of the cylinder
+    about the axis, or of the sphere, on which the nodes of the lubricated surface lie.
+    """
 
     kind: Literal["rotation"]
     speed: AngularSpeedHistory
+    axis: Direction = "z"
+    centre: tuple[Length, ...] | None = None
 
     def at(self, t: float) -> float:
         """Return the angular speed at time ``t`` in s, rad/s."""
@@ -44,11 +52,11 @@ class Rotation(Section):
 
 
 class Sliding(Section):
-    """The plane slides, the body is at rest; ``speed`` in m/s along ``direction``."""
+    """The plane slides, the body is at rest; ``speed`` in m/s along ``direction``, in the plane."""
 
     kind: Literal["sliding"]
     speed: SpeedHistory
-    direction: Literal["x", "z"] = "x"
+    direction: Direction = "x"
 
     def at(self, t: float) -> float:
         """Return the speed of the plane at time ``t`` in s, m/s."""

@@ -31,6 +31,8 @@ def resolved(scene: "Scene") -> dict[str, Any]:
     for boundary in tables["boundary"].values():
         if scene.dimension == 2 and isinstance(boundary.get("traction"), dict):
             boundary["traction"].pop("z", None)
+    if scene.dimension == 2:
+        tables.get("motion", {}).pop("axis", None)
     if not tables["boundary"]:
         del tables["boundary"]
     return tables

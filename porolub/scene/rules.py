@@ -1,11 +1,13 @@
 """Rules that span sections: what a scene must have for its parts to make sense together."""
 
 import difflib
+import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from porolub.scene.geometry import MeshFile
-from porolub.scene.operation import Rotation, Sliding
+from porolub.scene.motion_rules import motion_violations
+from porolub.scene.operation import Rotation
 from porolub.scene.time_rules import time_violations
 
 if TYPE_CHECKING:
@@ -18,6 +20,8 @@ def violations(scene: "Scene") -> Iterator[str]:
     yield from _mesh(scene)
     yield from _physics(scene)
     yield from _motion(scene)
+    yield from motion_violations(scene)
+    yield from _symmetry(scene)
     yield from _boundaries(scene)
     yield from time_violations(scene)
 
@@ -91,14 +95,27 @@ def _physics(scene: "Scene") -> Iterator[str]:
 
 def _motion(scene: "Scene") -> Iterator[str]:
     motion = scene.motion
-    if isinstance(motion, Rotation) and not scene.geometry.has_axis:
-        yield 'motion.kind = "rotation" needs a shape with an axis: sector, barrel or file.'
-    if isinstance(motion, Sliding) and motion.direction == "z" and scene.dimension == 2:
-        yield 'motion.direction = "z" needs scene.dimension = 3; allowed here: x.'
     if scene.pores is not None and scene.pores.carry and not isinstance(motion, Rotation):
         yield 'pores.carry = true needs motion.kind = "rotation": otherwise nothing is carried.'
     if scene.contact is not None and scene.contact.friction_traction and motion is None:
         yield "contact.friction_traction = true needs a [motion] section: it sets the direction."
+
+
+def _symmetry(scene: "Scene") -> Iterator[str]:
+    shape = scene.geometry
+    names = shape.boundary_names(scene.dimension)
+    for name in shape.symmetry:
+        here = f'geometry.symmetry = {json.dumps(shape.symmetry)}: "{name}"'
+        if shape.symmetry.count(name) > 1:
+            yield f"{here} is named twice."
+            return
+        if name in (shape.lubricated, shape.bone):
+            yield f"{here} cannot be a symmetry plane: allowed are sides of the layer."
+        elif names is not None and name not in names:
+            sides = [n for n in names if n not in (shape.lubricated, shape.bone)]
+            near = difflib.get_close_matches(name, sides, 1)
+            hint = f" (did you mean {near[0]}?)" if near else ""
+            yield f"{here} is no boundary; allowed are {', '.join(sides)}{hint}."
 
 
 def _boundaries(scene: "Scene") -> Iterator[str]:

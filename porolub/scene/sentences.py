@@ -1,7 +1,6 @@
 """Turns what pydantic reports into sentences: the key, the value as given, what is allowed."""
 
 import difflib
-import json
 from collections.abc import Callable
 from typing import Any, get_args, get_origin
 
@@ -10,6 +9,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
 from porolub.scene.conditions import Boundary, Displacement, Traction
+from porolub.scene.describe import toml_value
 from porolub.scene.geometry import Barrel, Block, MeshFile, Sector
 from porolub.scene.histories import FORMS, keys_of
 from porolub.scene.operation import Rotation, Sliding
@@ -50,19 +50,6 @@ def sentences(error: ValidationError, context: dict[str, Any]) -> list[str]:
     ]
     more = len(lines) - MOST
     return lines[:MOST] + ([f"... and {more} more."] if more > 0 else [])
-
-
-def toml_value(value: Any) -> str:
-    """Write a value as it stands in a TOML file, shortened if it is long."""
-    if isinstance(value, dict):
-        text = "{" + ", ".join(f"{k} = {toml_value(v)}" for k, v in value.items()) + "}"
-    elif isinstance(value, list | tuple):
-        text = "[" + ", ".join(toml_value(v) for v in value) + "]"
-    elif isinstance(value, bool | str):
-        text = json.dumps(value, ensure_ascii=False)
-    else:
-        text = str(value)
-    return text if len(text) <= 80 else text[:77] + "..."
 
 
 def _key(loc: Loc) -> str:

@@ -29,10 +29,12 @@ def constraints_of(scene: Any, mesh: Any, dofs: Dofs, scales: Any, lubricated: s
 
     Raises SceneError for a boundary the mesh does not have.
     """
-    unknown = set(scene.boundary) - set(mesh.boundary_names)
-    if unknown:
-        raise SceneError(f"boundary.{min(unknown)}: the mesh has no such boundary; it has "
-                         f"{', '.join(sorted(mesh.boundary_names))}.")
+    symmetry = scene.geometry.symmetry
+    for where, names in (("boundary.{}", scene.boundary), ('geometry.symmetry: "{}"', symmetry)):
+        unknown = set(names) - set(mesh.boundary_names)
+        if unknown:
+            raise SceneError(f"{where.format(min(unknown))}: the mesh has no such boundary; it has "
+                             f"{', '.join(sorted(mesh.boundary_names))}.")
     build = ConstraintBuilder(dofs)
     for name in mesh.boundary_names:
         condition = scene.boundary.get(name)
@@ -45,7 +47,7 @@ def constraints_of(scene: Any, mesh: Any, dofs: Dofs, scales: Any, lubricated: s
             else:
                 _fix_normal(build, mesh, dofs, name, 0.0)
     if scene.film is not None and lubricated is not None:
-        _ambient_ends(build, mesh, dofs, lubricated)
+        _ambient_ends(build, mesh, dofs, lubricated, symmetry)
     return build.build()
 
 
@@ -93,11 +95,15 @@ def nodal_normals(mesh: Any, dofs: Dofs, name: str) -> Array:
     return np.divide(normals, size, out=np.zeros_like(normals), where=size > 0)
 
 
-def _ambient_ends(build: ConstraintBuilder, mesh: Any, dofs: Dofs, lubricated: str) -> None:
-    """The film meets the bath where its surface ends: p = 0 at the rim it shares with others."""
+def _ambient_ends(build: ConstraintBuilder, mesh: Any, dofs: Dofs, lubricated: str,
+                  symmetry: tuple[str, ...]) -> None:
+    """The film meets the bath where its surface ends: p = 0 at the rim it shares with others.
+
+    At a symmetry plane it does not end.
+    """
     rim = np.zeros(0, dtype=np.int64)
     for name in mesh.boundary_names:
-        if name not in (lubricated, "front", "back"):
+        if name not in (lubricated, *symmetry):
             shared = np.intersect1d(mesh.boundary_nodes(lubricated), mesh.boundary_nodes(name))
             rim = np.union1d(rim, shared)
     build.scalar("p", rim.astype(np.int64), 0.0)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from porolub.errors import SceneError
+from porolub.scene.directions import unit_vector
 from porolub.solve.conditions import prescribed_values
 from porolub.solve.scales import Scales
 from porolub.solve.surface import Circle
@@ -16,20 +17,28 @@ if TYPE_CHECKING:
 
 def operation_of(scene: Any, scales: Scales, circle: Circle | None) -> Operation:
     """The operating point of a scene at t = 0. Raises SceneError for a rotation without centre."""
-    op = Operation(centre=(0.0,) * scales.dim)
-    if scene.motion is not None and scene.motion.kind == "rotation":
-        if circle is None:
-            raise SceneError('motion.kind = "rotation": the lubricated surface of this mesh is '
-                             "no circular arc, so there is no centre to turn about.")
-        op = Operation("rotation", 0.0, (*circle.centre, 0.0)[: scales.dim])
-    elif scene.motion is not None:
-        axis = {"x": 0, "z": 2}[getattr(scene.motion, "direction", "x")]
-        direction = tuple(float(k == axis) for k in range(scales.dim))
-        op = Operation("sliding", 0.0, (0.0,) * scales.dim, direction)
+    dim, motion = scales.dim, scene.motion
+    op = Operation(centre=(0.0,) * dim)
+    if motion is not None and motion.kind == "rotation":
+        op = Operation("rotation", 0.0, _centre(motion, scales, circle),
+                       axis=unit_vector(motion.axis, 3))
+    elif motion is not None:
+        op = Operation("sliding", 0.0, (0.0,) * dim, unit_vector(motion.direction, dim))
     if scene.time is not None and scene.contact is not None and scene.contact.friction_traction:
         op.creep = scene.contact.friction_speed / scales.speed
     set_operation(op, scene, scales, 0.0)
     return op
+
+
+def _centre(motion: Any, scales: Scales, circle: Circle | None) -> tuple[float, ...]:
+    """A point (dim,) of the axis, scaled: the scene's or that of the surface."""
+    if motion.centre is not None:
+        return tuple(x / scales.length for x in motion.centre)
+    if circle is None:
+        arc = "circular arc" if scales.dim == 2 else "cylinder about motion.axis, and no sphere"
+        raise SceneError('motion.kind = "rotation": the lubricated surface of this mesh is no '
+                         f"{arc}, so there is no centre to turn about: give motion.centre.")
+    return (*circle.centre, 0.0)[: scales.dim]
 
 
 def set_operation(op: Operation, scene: Any, scales: Scales, t: float) -> None:

@@ -64,8 +64,8 @@ def compressible(scene: Any, scales: Scales) -> CompressibleFluid:
 
 
 def body_terms(scene: Any, law: Law | None, scales: Scales, operation: Operation,
-               boundaries: tuple[str, ...]) -> list[Term]:
-    """Skeleton, pores, carry and the tractions on named boundaries."""
+               ends: tuple[str, ...]) -> list[Term]:
+    """Skeleton, pores, carry through ``ends`` and the tractions on named boundaries."""
     terms: list[Term] = []
     mesh = scene.mesh
     if law is not None:
@@ -80,7 +80,6 @@ def body_terms(scene: Any, law: Law | None, scales: Scales, operation: Operation
         terms += [pores, storage]
         carry = None
         if scene.pores.carry:
-            ends = tuple(e for e in ("inlet", "outlet") if e in boundaries)
             fresh = scene.conventions.entering == "fresh"
             carry = Carry(a, operation, ends, fresh)
             capacity = a**2 / law.constrained_modulus

@@ -16,6 +16,7 @@ from porolub.fem.domains import Domain, NodalDomain
 from porolub.solve.conditions import constraints_of
 from porolub.solve.drive import operation_of
 from porolub.solve.effects import Law, body_terms, solid_law, surface_terms
+from porolub.solve.moving import ends_of_motion
 from porolub.solve.scales import Scales
 from porolub.solve.surface import Circle, LubricatedSurface, surface_circle
 from porolub.solve.system import System, contents_of, parts_of, union_of_fields
@@ -116,7 +117,8 @@ def build_model(scene: Any, mesh: Any, scales: Scales) -> Model:
     surface = None
     if name is not None:
         surface = lubricated_surface(scene, mesh, name, circle, operation)
-    terms = body_terms(scene, law, scales, operation, mesh.boundary_names)
+    ends = ends_of_motion(scene, mesh, operation)
+    terms = body_terms(scene, law, scales, operation, ends)
     if surface is not None:
         terms += surface_terms(scene, law, scales, operation, surface)
     if not terms:

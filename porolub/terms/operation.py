@@ -17,8 +17,9 @@ Array = NDArray[np.float64]
 class Operation:
     """Scaled operating point.
 
-    kind: ``rest``, ``rotation`` (body turns about ``centre``, speed in rad per time) or
-    ``sliding`` (plane moves along ``direction``, speed in length per time).
+    kind: ``rest``, ``rotation`` (body turns about ``axis`` through ``centre``, speed in rad per
+    time; in two dimensions the axis is z) or ``sliding`` (plane moves along ``direction``, speed
+    in length per time). ``axis`` and ``direction`` are unit vectors.
     force: load to balance, or None when ``approach`` is prescribed.
     friction: share of the dry friction that acts (continuation).
     share: share of tractions and prescribed values that acts (continuation).
@@ -36,18 +37,24 @@ class Operation:
     share: float = 1.0
     time: float = 0.0
     creep: float = 0.0
+    axis: tuple[float, ...] = (0.0, 0.0, 1.0)
 
     @property
     def motion(self) -> tuple[object, ...]:
         """All that the velocities depend on."""
-        return self.kind, self.speed, self.centre, self.direction
+        return self.kind, self.speed, self.centre, self.direction, self.axis
 
     def body_velocity(self, X: Array) -> Array:
-        """v = Omega e_z x (X - x0), (..., dim); zero unless the body rotates."""
+        """v = Omega axis x (X - x0), (..., dim); zero unless the body rotates."""
         v = np.zeros_like(X)
-        if self.kind == "rotation":
-            v[..., 0] = -self.speed * (X[..., 1] - self.centre[1])
-            v[..., 1] = self.speed * (X[..., 0] - self.centre[0])
+        if self.kind != "rotation":
+            return v
+        dim = X.shape[-1]
+        x, y, z = (X[..., k] - self.centre[k] if k < dim else 0.0 for k in range(3))
+        a, b, c = (self.speed * component for component in self.axis)
+        turned = (b * z - c * y, c * x - a * z, a * y - b * x)
+        for k in range(dim):
+            v[..., k] = turned[k]
         return v
 
     def plane_velocity(self, X: Array) -> Array:

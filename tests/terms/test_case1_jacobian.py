@@ -45,8 +45,15 @@ SCENES = READINGS | {
                                                contact={"friction_traction": True}),
     "block": CUBOID,
     "block, material, paper, linear": changed(CUBOID, conventions=MATERIAL | PAPER, solid=LINEAR),
-    "block, friction shears": changed(CUBOID, contact={"friction_traction": True},
+    "block, friction shears": changed(CUBOID, geometry={"symmetry": []},
+                                      contact={"friction_traction": True},
                                       motion={"direction": "z"}),
+    "block, oblique, free sides": changed(CUBOID, geometry={"symmetry": []},
+                                          contact={"friction_traction": True},
+                                          motion={"direction": [1.0, 0.0, -0.4]}),
+    "half a barrel": changed(BARREL, geometry={"symmetry": ["front"]}),
+    "barrel spinning under its film": changed(
+        BARREL, pores={"carry": False}, motion={"axis": [0.3, 1.0, 0.2], "centre": ["0 m"] * 3}),
 }
 
 
