@@ -54,6 +54,8 @@ class Mesh:
         vertices first
     boundaries: by name; shape: the structured shape or None
     vertex_ticks: logical positions of the vertices along each axis (structured meshes)
+    fine_index: (nnode, dim) places in the tensor grid of a structured mesh, even at vertices, odd
+        between them (see porolub.mesh.lattice); None of a mesh from a file
     """
 
     comm: MPI.Intracomm
@@ -69,6 +71,7 @@ class Mesh:
     boundaries: dict[str, Boundary]
     shape: Shape | None = None
     vertex_ticks: tuple[Array, ...] = field(default=())
+    fine_index: Index | None = None
 
     @property
     def dim(self) -> int:

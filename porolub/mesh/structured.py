@@ -73,6 +73,7 @@ def structured(
         boundaries=_boundaries(shape, counts, cell, cells, index, degree),
         shape=shape,
         vertex_ticks=tuple(ticks),
+        fine_index=index,
     )
 
 

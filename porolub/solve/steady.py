@@ -10,7 +10,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,7 @@ from petsc4py import PETSc
 
 from porolub.mesh import build_mesh
 from porolub.solve.derived import Derived
+from porolub.solve.linear import Linear, final_preset
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.options import refuse_unused_together, set_options
@@ -64,6 +65,7 @@ class Found:
     newton_iterations: int = 0
     linear_iterations: int = 0
     rejected: int = 0
+    preset: str = ""  # of the linear solver
 
 
 @dataclass
@@ -146,7 +148,8 @@ class SteadySolver:
             self.newton_iterations += found.newton_iterations
             self.linear_iterations += found.linear_iterations
             self.rejected += found.rejected
-            refuse_unused_together(self._user_options, self.comm)
+            if found.preset == final_preset(self.scene):
+                refuse_unused_together(self._user_options, self.comm)
             failures += not found.result.converged
             if last or failures == FAILURES_ALLOWED:
                 if model is None:
@@ -169,11 +172,13 @@ class SteadySolver:
         start = time.perf_counter()
         model = self._model(level, scales, before.edges, comm)
         self.clock.add("setup", start)
-        newton = Newton(model.system, self.clock, self.observe, self._stop)
+        linear = Linear(model)
+        newton = Newton(model.system, self.clock, self.observe, self._stop, linear=linear)
         x, result, rejected = self._level(model, newton, before.data, level.name)
         data = snapshot(model, x) if hand_on else None
         edges = contact_edges(model, x) if hand_on and result.converged else ()
-        found = Found(result, data, edges, newton.iterations, newton.linear_iterations, rejected)
+        found = Found(result, data, edges, newton.iterations, newton.linear_iterations, rejected,
+                      linear.preset)
         newton.destroy()
         return model, x, found
 
@@ -182,18 +187,21 @@ class SteadySolver:
 
         Quicker than in parallel, and the path to the finer meshes does not depend on the ranks.
         """
-        found: Found | Exception | None = None
+        found: Found | None = None
+        told: Found | Exception | None = None
         if self.comm.rank == 0:
             try:
                 model, x, found = self._run(level, scales, before, MPI.COMM_SELF, hand_on=True)
                 _free(model, x)
+                assert found.data is not None
+                told = replace(found, data=found.data.outline())
             except Exception as error:  # told to all ranks, which raise it together
-                found = error
-        found = self.comm.bcast(found)
-        if isinstance(found, Exception):
-            raise found
-        assert found is not None
-        return found
+                told = error
+        told = self.comm.bcast(told)
+        if isinstance(told, Exception):
+            raise told
+        assert told is not None
+        return found or told
 
     @cached_property
     def scales(self) -> Scales:
@@ -205,8 +213,7 @@ class SteadySolver:
         if stated is not None:
             return float(stated)
         mesh = build_mesh(self.scene, self.comm)
-        thickness = typical_thickness(mesh, lubricated_name(self.scene))
-        return thickness
+        return typical_thickness(mesh, lubricated_name(self.scene))
 
     def model(self, edges: tuple[float, ...] = ()) -> Model:
         """The scene on its own mesh, refined toward ``edges`` (arc positions, mesh units)."""

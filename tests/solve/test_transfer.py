@@ -102,10 +102,22 @@ def test_the_error_of_a_smooth_state_falls_with_the_square_of_the_element_size()
 @pytest.mark.mpi
 def test_ranks_carry_the_same_state(run_mpi, tmp_path: Path) -> None:
     found = {}
-    for ranks in (1, 2):
+    for ranks in (1, 2, 4):
         path = tmp_path / f"{ranks}.npz"
         run_mpi(ranks, SCRIPT, path)
         found[ranks] = dict(np.load(path))
-    assert set(found[1]) >= {"u", "p", "l", "v0"}
-    for name, values in found[1].items():
-        np.testing.assert_allclose(found[2][name], values, atol=1e-13, err_msg=name)
+    assert set(found[1]) >= {f"{case} {way} {name}" for case in ("plane", "barrel")
+                             for way in ("shared", "alone") for name in ("u", "p", "l", "v0")}
+    for ranks in (2, 4):
+        for name, values in found[1].items():
+            np.testing.assert_allclose(found[ranks][name], values, atol=1e-13, err_msg=name)
+
+
+def test_what_other_ranks_are_told_of_a_state_on_rank_0_has_no_rows() -> None:
+    with model_of(COARSE) as coarse:
+        data = snapshot(coarse, vector(coarse, affine(coarse)))
+    outline = data.outline()
+    assert not data.shared
+    assert outline.scalars == data.scalars
+    assert {name: rows.shape for name, rows in outline.rows.items()} == {
+        name: (0, rows.shape[1]) for name, rows in data.rows.items()}
