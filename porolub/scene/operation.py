@@ -38,7 +38,7 @@ class Rotation(Section):
 
     v = speed ``axis`` x (X - ``centre``), with a point of the axis in m, one number for each
     dimension. Left out, the centre is that of the shape; of a mesh file that of the cylinder
-    about the axis, or of the sphere, on which the nodes of the lubricated surface lie.
+    about the axis, or of the sphere, on which the vertices of the lubricated surface lie.
     """
 
     kind: Literal["rotation"]

@@ -1,7 +1,7 @@
 """The circle a lubricated surface lies on: its centre is where the body turns.
 
 A sector states it; of a user's mesh it is found by fitting a circle, a cylinder about the axis of
-the motion or a sphere to the surface's nodes.
+the motion or a sphere to the surface's vertices.
 """
 
 from __future__ import annotations
@@ -103,7 +103,8 @@ def surface_circle(scene: Any, mesh: Any, boundary: str | None, length: float) -
     if mesh.shape is not None or boundary is None or boundary not in mesh.boundary_names:
         return None
     nodes = mesh.boundary_nodes(boundary)
-    X = mesh.coordinates[nodes[mesh.owned[nodes]]]
+    # middles of straight edges lie beside the surface
+    X = mesh.coordinates[nodes[mesh.owned[nodes] & (nodes < mesh.nvertices)]]
     if mesh.dim == 3:
         axis = np.asarray(unit_vector(getattr(scene.motion, "axis", "z"), 3))
         return _fit_axis(X, mesh.comm, axis, np.asarray(scene.geometry.toward_plane(3)))
