@@ -98,8 +98,15 @@ class Domain:
         mesh = self.mesh
         tables = self.tables(mesh.degree)
         X = mesh.coordinates[mesh.cells[self.cells]]
-        self.position = np.einsum("eqi,eid->eqd", tables.value[self.variant], X)
-        return np.einsum("eqri,eid->eqdr", tables.gradient[self.variant], X)
+        nq, dim = tables.value.shape[1], mesh.dim
+        self.position = np.empty((len(X), nq, dim))
+        jacobian = np.empty((len(X), nq, dim, dim))
+        for v in range(len(tables.value)):
+            rows = np.flatnonzero(self.variant == v)
+            self.position[rows] = tables.value[v] @ X[rows]
+            slopes = tables.gradient[v].reshape(nq * dim, -1) @ X[rows]
+            jacobian[rows] = slopes.reshape(-1, nq, dim, dim).swapaxes(2, 3)
+        return jacobian
 
     def _bad_cell(self, det: Array) -> str:
         e = int(np.argmin(det.min(axis=1)))

@@ -18,7 +18,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-ENTRIES_AT_A_TIME = 1 << 20
+ROWS_AT_A_TIME = 4096
 
 
 def _incidence(dofs: list[Ints], size: int) -> csr_array:
@@ -46,19 +46,21 @@ def _with_components(nodes: csr_array, width: Ints, single: NDArray[np.bool_]
 
     The rows ``single`` stay as they are.
     """
-    widths = width[nodes.indices]
-    widths[np.repeat(single, np.diff(nodes.indptr))] = 1
-    ends = np.concatenate([[0], np.cumsum(widths, dtype=np.int64)])
-    if ends[-1] > np.iinfo(np.int32).max:
+    parts: list[Ints] = []
+    ends = [np.zeros(1, np.int64)]
+    for start in range(0, nodes.shape[0], ROWS_AT_A_TIME):  # few enough for the cache
+        rows = nodes.indptr[start:start + ROWS_AT_A_TIME + 1]
+        first = nodes.indices[rows[0]:rows[-1]]
+        many = width[first]
+        many[np.repeat(single[start:start + len(rows) - 1], np.diff(rows))] = 1
+        end = np.concatenate([[0], np.cumsum(many)]).astype(np.int32)
+        widened = np.repeat(first - end[:-1], many) + np.arange(end[-1])
+        parts.append(widened.astype(np.int32))
+        ends.append(ends[-1][-1] + end[rows[1:] - rows[0]].astype(np.int64))
+    if ends[-1][-1] > np.iinfo(np.int32).max:
         raise SolveError("The matrix of one rank has more than 2^31 entries: use more ranks.")
-    indices = np.empty(ends[-1], np.int32)
-    for start in range(0, len(widths), ENTRIES_AT_A_TIME):
-        part = slice(start, start + ENTRIES_AT_A_TIME)
-        many = widths[part]
-        first, last = ends[start], ends[start + len(many)]
-        place = np.arange(first, last) - np.repeat(ends[start:start + len(many)], many)
-        indices[first:last] = np.repeat(nodes.indices[part], many) + place
-    return ends[nodes.indptr].astype(np.int32), indices
+    indices = np.concatenate(parts) if parts else np.zeros(0, np.int32)
+    return np.concatenate(ends).astype(np.int32), indices
 
 
 class Pattern:
@@ -105,15 +107,16 @@ class Pattern:
     def create(self) -> PETSc.Mat:
         """A matrix with this pattern."""
         d = self._dofs
+        sizes = ((d.count_owned, d.size), (d.count_owned, d.size))
+        if self._serial:  # the matrix uses the pattern's own arrays
+            csr = self.indptr, self.indices, np.zeros(len(self.indices))
+            return PETSc.Mat().createAIJWithArrays(sizes, csr, comm=d.mesh.comm)
         mat = PETSc.Mat().create(comm=d.mesh.comm)
-        mat.setSizes(((d.count_owned, d.size), (d.count_owned, d.size)))
+        mat.setSizes(sizes)
         mat.setType("aij")
-        if self._serial:
-            mat.setPreallocationCSR((self.indptr, self.indices, np.zeros(len(self.indices))))
-        else:
-            mat.setUp()
-            rows = np.repeat(d.global_numbers, np.diff(self.indptr))
-            coo.preallocate(mat, rows, d.global_numbers[self.indices])
+        mat.setUp()
+        rows = np.repeat(d.global_numbers, np.diff(self.indptr))
+        coo.preallocate(mat, rows, d.global_numbers[self.indices])
         return mat
 
     @contextmanager
