@@ -20,9 +20,10 @@ from porolub.io.terminal import new_console
 from porolub.scene import effects
 from porolub.solve.derived import scalars
 from porolub.solve.gather import gather_fields, gather_state, gather_surface
+from porolub.solve.linear import final_preset
+from porolub.solve.options import text_of_options
 from porolub.solve.report import Report, StepRecord
 from porolub.solve.steady import Outcome
-from porolub.together import on_root
 from porolub.versions import versions
 
 FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach", "j": "volume_change",
@@ -32,19 +33,15 @@ FIELD_NAMES = {"u": "displacement", "l": "contact_pressure", "v0": "approach", "
 def finish(scene: Any, outcome: Outcome, out_dir: Path, quiet: bool) -> None:
     """Write and show the results. Collective. Raises SolveError if the solve failed, Interrupted
     if it was interrupted."""
-    report = make_report(scene, outcome)
+    report, comm = make_report(scene, outcome), outcome.model.mesh.comm
     transient = scene.time is not None
     interrupted = outcome.status == "interrupted"
     start = time.perf_counter()
 
-    def write() -> None:
-        if report is not None:
-            write_results(out_dir, report, scene, options_used(), plots=not interrupted,
-                          history_written=transient)
-
-    on_root(outcome.model.mesh.comm, write)
+    write_results(out_dir, report, scene, options_used(scene), plots=not interrupted,
+                  history_written=transient, comm=comm)
     outcome.clock.add("output", start)
-    if report is not None and not quiet and not interrupted:
+    if comm.rank == 0 and not quiet and not interrupted:
         _show(report, scene, out_dir)
     if interrupted:
         raise Interrupted(f"{outcome.message} at t = {outcome.overall['time']:.6g} s; porolub "
@@ -53,15 +50,13 @@ def finish(scene: Any, outcome: Outcome, out_dir: Path, quiet: bool) -> None:
         raise SolveError(f"{outcome.message} What was computed is in {out_dir}.")
 
 
-def options_used() -> str:
-    """Every option of porolub's solver in force, one a line, as PETSc reads them."""
-    from petsc4py import PETSc
-
-    return "\n".join(f"-{k} {v}" for k, v in sorted(PETSc.Options().getAll().items()))
+def options_used(scene: Any) -> str:
+    """Every option of the solver on the scene's own mesh, one a line, as PETSc reads them."""
+    return text_of_options(final_preset(scene))
 
 
-def make_report(scene: Any, outcome: Outcome) -> Report | None:
-    """Summary, fields and profiles of an outcome on rank 0, None elsewhere. Collective."""
+def make_report(scene: Any, outcome: Outcome) -> Report:
+    """Summary, fields, profiles and state of an outcome. Collective."""
     model, x = outcome.model, outcome.x
     start = time.perf_counter()
     values = scalars(model, x)
@@ -74,12 +69,11 @@ def make_report(scene: Any, outcome: Outcome) -> Report | None:
     comm = model.mesh.comm
     memory = comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024)
     spent = {k: comm.allreduce(v, op=MPI.MAX) for k, v in outcome.clock.spent.items()}
-    if fields is None:
-        return None
+    stress = comm.allreduce(fields.von_mises.max(initial=-np.inf), op=MPI.MAX)
     summary: dict[str, Any] = {
         "status": outcome.status, "message": outcome.message,
         **values,
-        "von_mises_max": float(np.max(fields.von_mises)) if model.law is not None else None,
+        "von_mises_max": float(stress) if model.law is not None else None,
         "jacobian_min": model.system.lowest_jacobian if model.law is not None else None,
         "effects": effects(scene), "dofs": counts, "ranks": comm.size,
         "newton_iterations": outcome.newton_iterations,

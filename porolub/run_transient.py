@@ -22,7 +22,7 @@ from porolub.io.progress import Progress
 from porolub.io.summary import read_summary
 from porolub.scene import load_scene, scene_from_dict
 from porolub.scene.compare import differences
-from porolub.solve.options import set_options
+from porolub.solve.options import set_options, users_options
 from porolub.solve.report import FrameData, Resume, StepRecord
 from porolub.solve.transient import TransientSolver
 from porolub.solve.watch import Watch
@@ -43,17 +43,19 @@ class Recorder:
     def open(self, resume: Resume | None) -> list[StepRecord]:
         """Begin the files anew, or go on with those there are from where ``resume`` stands.
 
-        Returns the steps so far, on all ranks. Collective; ``resume`` on rank 0.
+        Returns the steps so far, on all ranks. Collective.
         """
-        return list(on_root(self.comm, lambda: self._open(resume)))
+        frame = 0 if resume is None else resume.frame
+        records = list(on_root(self.comm, lambda: self._open_history(resume)))
+        self.frames = FrameWriter(self.directory, frame, self.comm)
+        return records
 
-    def _open(self, resume: Resume | None) -> list[StepRecord]:
+    def _open_history(self, resume: Resume | None) -> list[StepRecord]:
         path = self.directory / HISTORY
         if resume is None:
-            self.history, self.frames = HistoryWriter(path), FrameWriter(self.directory)
+            self.history = HistoryWriter(path)
             return []
         self.history = HistoryWriter(path, resume.states[0].time)
-        self.frames = FrameWriter(self.directory, resume.frame)
         return read_records(path) if path.exists() else []
 
     def watch(self) -> Watch:
@@ -66,35 +68,32 @@ class Recorder:
         on_root(self.comm, lambda: self.history.write(record))
         self.progress.step(record)
 
-    def frame(self, frame: FrameData | None) -> None:
-        on_root(self.comm, lambda: self.frames.write(frame) if frame is not None else None)
+    def frame(self, frame: FrameData) -> None:
+        self.frames.write(frame)
 
-    def checkpoint(self, gather: Callable[[], Resume | None], now: bool = False) -> None:
+    def checkpoint(self, gather: Callable[[], Resume], now: bool = False) -> None:
         """Write a checkpoint unless the last one is too recent for what it costs. Collective."""
         start = wall.perf_counter()
         if not self.comm.bcast(now or start >= self._due, root=0):
             return
         resume = gather()
-        on_root(self.comm, lambda: self._write(resume))
+        on_root(self.comm, lambda: self.history.sync())
+        write_checkpoint(self.directory / CHECKPOINT, resume, self.toml, self.digest, self.comm)
         done = wall.perf_counter()
         self._due = done + SPARINGLY * (done - start)
 
-    def _write(self, resume: Resume | None) -> None:
-        assert resume is not None  # rank 0
-        self.history.sync()
-        write_checkpoint(self.directory / CHECKPOINT, resume, self.toml, self.digest)
-
 
 def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = False,
-                  resume: Resume | None = None, resumed: bool = False) -> int:
+                  resume: Resume | None = None) -> int:
     """Run a scene with [time], from its start or from a checkpoint. Returns 0. Collective.
 
-    ``resumed`` on all ranks; the data of ``resume`` on rank 0. Errors as in ``run_scene``.
+    Errors as in ``run_scene``.
     """
     comm, out_dir = MPI.COMM_WORLD, Path(out_dir)
     root = comm.rank == 0
     user_options = set_options(petsc_options)
-    toml = on_root(comm, lambda: begin_run(out_dir, scene, options_used(), resume=resumed))
+    resumed = resume is not None
+    toml = on_root(comm, lambda: begin_run(out_dir, scene, options_used(scene), resume=resumed))
     setup_logging(None)
     on_root(comm, lambda: setup_logging(out_dir, resume=resumed))
     try:
@@ -103,7 +102,7 @@ def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: boo
             records = recorder.open(resume)
             solver = TransientSolver(scene, comm, recorder.watch(), user_options,
                                      interrupt.asked, interrupt.raise_if_asked)
-            outcome = solver.solve(resume, records, resumed)
+            outcome = solver.solve(resume, records)
             if solver.records:
                 recorder.checkpoint(solver.resume, now=True)
             shown.done()  # its status would get between the lines of the tables
@@ -122,11 +121,9 @@ def restart(directory: Path, overrides: Any = (), petsc_options: str = "",
     directory without a checkpoint, or one of another scene (naming the keys).
     """
     comm, directory = MPI.COMM_WORLD, Path(directory)
-    resume: Resume | None = None
+    resume, before = read_checkpoint(directory / CHECKPOINT, comm)
 
     def read() -> tuple[dict[str, Any], str, str]:
-        nonlocal resume
-        resume, before = read_checkpoint(directory / CHECKPOINT)
         scene = load_scene(directory / SCENE, overrides)
         _refuse_other_scene(directory / CHECKPOINT, before, scene)
         options = directory / OPTIONS
@@ -138,9 +135,8 @@ def restart(directory: Path, overrides: Any = (), petsc_options: str = "",
         if comm.rank == 0 and not quiet:
             print(f"{directory}: {ended}")
         return 0
-    PETSc.Options().insertString(" ".join(options.split()))
-    return run_transient(scene_from_dict(tables), directory, petsc_options, quiet, resume,
-                         resumed=True)
+    PETSc.Options().insertString(users_options(options))
+    return run_transient(scene_from_dict(tables), directory, petsc_options, quiet, resume)
 
 
 def _refuse_other_scene(checkpoint: Path, before: dict[str, Any], scene: Any) -> None:

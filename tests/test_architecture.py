@@ -18,7 +18,7 @@ ALLOWED = {
     "fem": ("mesh", "laws", "errors"),
     "terms": ("laws", "fem", "mesh", "errors"),
     "solve": ("scene", "laws", "mesh", "fem", "terms", "errors"),
-    "io": (*BELOW, "errors", ""),
+    "io": (*BELOW, "errors", "together", ""),
     "study": (*BELOW, "errors", "io", "run", ""),
     "versions": ("",),
     "interrupt": ("errors",),

@@ -4,21 +4,26 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
 
 from porolub.errors import SolveError
+from porolub.together import on_root
 
 
 @contextmanager
-def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
+def replacing(*targets: Path, comm: Any = MPI.COMM_SELF) -> Iterator[tuple[Path, ...]]:
     """Yield a temporary path for each target; when the block ends well they take their places.
 
     All targets lie in one directory. If the block raises, the targets are as they were. Of
     several targets the later ones refer to the first (an index to its data): they are taken away
-    before it is replaced, so that no interruption leaves old and new together.
+    before it is replaced, so that no interruption leaves old and new together. The ranks of
+    ``comm`` write the same files together; the block ends alike on all of them.
     """
     temporary = tuple(target.with_name(f".{target.name}.tmp") for target in targets)
-    try:
-        yield temporary
+
+    def put_in_place() -> None:
         for path in temporary:
             to_disk(path)
         for target in targets[1:]:
@@ -26,9 +31,14 @@ def replacing(*targets: Path) -> Iterator[tuple[Path, ...]]:
         for path, target in zip(temporary, targets, strict=True):
             path.replace(target)
         to_disk(targets[0].parent)
+
+    try:
+        yield temporary
+        on_root(comm, put_in_place)
     finally:
-        for path in temporary:
-            path.unlink(missing_ok=True)
+        if comm.rank == 0:
+            for path in temporary:
+                path.unlink(missing_ok=True)
 
 
 def write_text(path: Path, text: str) -> None:

@@ -1,7 +1,8 @@
 """checkpoint.h5: all a run needs to go on, in an order that no partition changes.
 
 An HDF5 file whose first 512 bytes (HDF5's user block) are a line with the version and one with
-the SHA-256 of all that follows, so that a damaged file is known before HDF5 looks into it::
+a check sum of all that follows, so that a damaged file is known before HDF5 looks into it: the
+SHA-256 of the SHA-256 sums of pieces of 1 MiB, which many ranks can share::
 
     attributes        step (s), frame, digest of the scene
     scene             the resolved scene as TOML (UTF-8 bytes)
@@ -11,10 +12,11 @@ the SHA-256 of all that follows, so that a damaged file is known before HDF5 loo
                       values (states, k, components) with attribute unit; scalars have no nodes
     edges             (m,) arc positions, m
     totals            attributes: running sums by name
+
+Each rank writes and reads its block of the rows.
 """
 
 import hashlib
-import io
 import re
 import tomllib
 from pathlib import Path
@@ -22,76 +24,110 @@ from typing import Any
 
 import h5py
 import numpy as np
+from mpi4py import MPI
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing, reported
+from porolub.io.hdf5 import NewFile, new_hdf5
+from porolub.solve.natural import bounds
 from porolub.solve.report import Resume, StateData
+from porolub.together import on_each, on_root
 
-VERSION = 2
+VERSION = 3
+PIECE = 1 << 20
 _USER_BLOCK = 512  # bytes, the smallest HDF5 knows
 _HEADER = re.compile(rb"porolub checkpoint (\d+)\n([0-9a-f]{64})\n")
 
 
-def write_checkpoint(path: Path, resume: Resume, scene_toml: str, digest: str) -> None:
+def write_checkpoint(
+    path: Path, resume: Resume, scene_toml: str, digest: str, comm: Any = MPI.COMM_SELF
+) -> None:
     """Write what a run goes on from; whenever it is interrupted, the old file or the new is there.
 
     scene_toml, digest: the resolved scene and its hash. All states have the same mesh and fields
-    (ValueError otherwise). Raises SolveError where the file cannot be written.
+    (ValueError otherwise). Collective: each rank gives its block; what is not of nodes counts on
+    rank 0. Raises SolveError where the file cannot be written.
     """
-    _refuse_unequal(resume)
-    buffer = io.BytesIO()  # not HDF5 writes to the disk but we do: see porolub.io.hdf5
-    with h5py.File(buffer, "w", userblock_size=_USER_BLOCK) as file:
-        _put(file, resume)
-        file.attrs["digest"] = digest
-        file["scene"] = np.frombuffer(scene_toml.encode(), dtype="u1")
-    data = buffer.getbuffer()
-    header = f"porolub checkpoint {VERSION}\n{_sum(data)}\n".encode()
-    data[: len(header)] = header
-    with reported(path), replacing(path) as (temporary,):
-        temporary.write_bytes(data)
+    if not comm.allreduce(_alike(resume), op=MPI.LAND):
+        raise ValueError("the states of a checkpoint differ in their mesh, fields or number")
+    with reported(path), replacing(path, comm=comm) as (temporary,):
+        with new_hdf5(temporary, comm, _USER_BLOCK) as file:
+            _put(file, resume)
+            file.attrs["digest"] = digest
+            file.whole("scene", np.frombuffer(scene_toml.encode(), dtype="u1"))
+        header = f"porolub checkpoint {VERSION}\n{_sum(temporary, comm)}\n".encode()
+        on_root(comm, lambda: _begin_with(temporary, header))
 
 
-def read_checkpoint(path: Path) -> tuple[Resume, dict[str, Any]]:
-    """Read what to go on from and the tables of the resolved scene.
+def read_checkpoint(path: Path, comm: Any = MPI.COMM_SELF) -> tuple[Resume, dict[str, Any]]:
+    """Read what to go on from, each rank its block, and the tables of the resolved scene.
 
-    Raises SceneError for a file that is missing, damaged, no checkpoint or of another version.
+    Collective. Raises SceneError for a file that is missing, damaged, no checkpoint or of another
+    version.
     """
-    data = _read(path)
+    known = on_root(comm, lambda: _header(path))
     try:
-        with h5py.File(io.BytesIO(data), "r") as file:
-            return _get(file), tomllib.loads(file["scene"][()].tobytes().decode())
-    except (OSError, KeyError, ValueError) as error:
-        raise SceneError(f"{path}: this is no complete checkpoint ({error}).") from error
+        found = _sum(path, comm)
+    except OSError as error:
+        raise _unreadable(path, error) from error
+    if found != known:
+        raise SceneError(f"{path}: this checkpoint is damaged.")
+
+    def read() -> tuple[Resume, dict[str, Any]]:
+        try:
+            with h5py.File(path, "r") as file:
+                return _get(file, comm), tomllib.loads(file["scene"][()].tobytes().decode())
+        except (OSError, KeyError, ValueError) as error:
+            raise SceneError(f"{path}: this is no complete checkpoint ({error}).") from error
+
+    resume, tables = on_each(comm, read)
+    return resume, tables
 
 
 def read_digest(path: Path) -> str:
-    """Read the hash of the scene the checkpoint belongs to. Raises as read_checkpoint."""
-    data = _read(path)
-    with h5py.File(io.BytesIO(data), "r") as file:
-        return str(file.attrs["digest"])
+    """Read the hash of the scene the checkpoint belongs to; whether the rest of the file is as it
+    was written is for read_checkpoint to say. Raises SceneError as that does."""
+    _header(path)
+    try:
+        with h5py.File(path, "r") as file:
+            return str(file.attrs["digest"])
+    except (OSError, KeyError) as error:
+        raise SceneError(f"{path}: this is no complete checkpoint ({error}).") from error
 
 
-def _put(file: h5py.File, resume: Resume) -> None:
+def _put(file: NewFile, resume: Resume) -> None:
     file.attrs.update(step=resume.step, frame=resume.frame)
-    file["time"] = np.array([state.time for state in resume.states])
-    file["order"] = np.array(resume.orders, dtype="i8")
-    file["edges"] = np.array(resume.edges, dtype=float)
-    file.create_group("totals").attrs.update(resume.totals)
+    file.whole("time", np.array([state.time for state in resume.states]))
+    file.whole("order", np.array(resume.orders, dtype="i8"))
+    file.whole("edges", np.array(resume.edges, dtype=float))
+    file.groups["totals"] = dict(resume.totals)
     newest = resume.states[0]
-    file["mesh_nodes"] = newest.mesh_nodes
-    for name, (nodes, _) in newest.fields.items():
-        group = file.create_group(f"fields/{name}")
-        group["nodes"] = np.asarray(nodes, dtype="i8")
-        group["values"] = np.stack([state.fields[name][1] for state in resume.states])
-        group["values"].attrs["unit"] = newest.units[name]
+    file.rows("mesh_nodes", newest.mesh_nodes, "f8")
+    for name, unit in newest.units.items():
+        nodes = np.asarray(newest.fields[name][0], dtype="i8")
+        values = np.stack([state.fields[name][1] for state in resume.states])
+        if file.comm.allreduce(len(nodes)):
+            file.rows(f"fields/{name}/nodes", nodes, "i8")
+            file.rows(f"fields/{name}/values", values, "f8", axis=1, unit=unit)
+        else:  # a scalar, which all ranks have
+            file.whole(f"fields/{name}/nodes", nodes)
+            file.whole(f"fields/{name}/values", values, unit=unit)
 
 
-def _get(file: h5py.File) -> Resume:
+def _get(file: h5py.File, comm: Any) -> Resume:
+    def mine(rows: h5py.Dataset, axis: int = 0) -> slice:
+        first = bounds(rows.shape[axis], comm.size)
+        return slice(*first[comm.rank : comm.rank + 2].tolist())
+
     groups = dict(file["fields"].items())
-    nodes = {name: group["nodes"][()] for name, group in groups.items()}
-    values = {name: group["values"][()] for name, group in groups.items()}
-    units = {name: str(group["values"].attrs["unit"]) for name, group in groups.items()}
-    mesh_nodes = file["mesh_nodes"][()]
+    nodes, values, units = {}, {}, {}
+    for name, group in groups.items():
+        part = mine(group["nodes"])
+        nodes[name] = group["nodes"][part]
+        scalar = not group["nodes"].shape[0]
+        values[name] = group["values"][()] if scalar else group["values"][:, part]
+        units[name] = str(group["values"].attrs["unit"])
+    mesh_nodes = file["mesh_nodes"][mine(file["mesh_nodes"])]
     states = tuple(
         StateData(
             float(time),
@@ -111,8 +147,8 @@ def _get(file: h5py.File) -> Resume:
     )
 
 
-def _refuse_unequal(resume: Resume) -> None:
-    """What is stored once must be the same in all states."""
+def _alike(resume: Resume) -> bool:
+    """Whether what is stored once is the same in all states."""
     newest = resume.states[0]
     same = len(resume.orders) == len(resume.states)
     for state in resume.states[1:]:
@@ -122,20 +158,18 @@ def _refuse_unequal(resume: Resume) -> None:
             np.array_equal(nodes, newest.fields[name][0])
             for name, (nodes, _) in state.fields.items()
         )
-    if not same:
-        raise ValueError("the states of a checkpoint differ in their mesh, fields or number")
+    return same
 
 
-def _read(path: Path) -> bytes:
-    """The bytes of a file that is a checkpoint of this version and as it was written."""
+def _header(path: Path) -> str:
+    """The check sum of a file that is a checkpoint of this version."""
     if not path.is_file():
         raise SceneError(f"{path}: there is no checkpoint here.")
     try:
-        data = path.read_bytes()
+        with path.open("rb") as file:
+            header = _HEADER.match(file.read(_USER_BLOCK))
     except OSError as error:
-        reason = error.strerror or error
-        raise SceneError(f"{path}: the checkpoint cannot be read ({reason}).") from error
-    header = _HEADER.match(data)
+        raise _unreadable(path, error) from error
     if header is None:
         raise SceneError(f"{path}: this is no checkpoint that this porolub could read.")
     version = int(header[1])
@@ -143,10 +177,28 @@ def _read(path: Path) -> bytes:
         raise SceneError(
             f"{path}: this checkpoint is of version {version}; this porolub reads {VERSION}."
         )
-    if header[2].decode() != _sum(memoryview(data)):
-        raise SceneError(f"{path}: this checkpoint is damaged.")
-    return data
+    return header[2].decode()
 
 
-def _sum(data: memoryview) -> str:
-    return hashlib.sha256(data[_USER_BLOCK:]).hexdigest()
+def _unreadable(path: Path, error: OSError) -> SceneError:
+    return SceneError(f"{path}: the checkpoint cannot be read ({error.strerror or error}).")
+
+
+def _begin_with(path: Path, header: bytes) -> None:
+    with path.open("r+b") as file:
+        file.write(header)
+
+
+def _sum(path: Path, comm: Any) -> str:
+    """The check sum of all but the user block; the ranks share the pieces. Collective."""
+    size = on_root(comm, lambda: path.stat().st_size) - _USER_BLOCK
+    first = bounds(-(-max(size, 0) // PIECE), comm.size)
+
+    def sums() -> bytes:
+        with path.open("rb") as file:
+            file.seek(_USER_BLOCK + int(first[comm.rank]) * PIECE)
+            mine = range(first[comm.rank], first[comm.rank + 1])
+            return b"".join(hashlib.sha256(file.read(PIECE)).digest() for _ in mine)
+
+    parts = comm.gather(on_each(comm, sums), root=0)
+    return str(comm.bcast(hashlib.sha256(b"".join(parts)).hexdigest() if parts else "", root=0))

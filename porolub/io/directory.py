@@ -3,10 +3,16 @@
 A run of many steps begins with begin_run, adds to history.csv, frames and checkpoint.h5 as it goes
 (HistoryWriter, FrameWriter, write_checkpoint) and ends with write_results; a steady run needs the
 last only.
+
+All that is written is collective: what grows with the volume each rank writes its part of, the rest
+rank 0.
 """
 
 import os
 from pathlib import Path
+from typing import Any
+
+from mpi4py import MPI
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing, reported, write_text
@@ -16,8 +22,12 @@ from porolub.io.frames import remove_frames
 from porolub.io.history import write_history
 from porolub.io.summary import write_summary
 from porolub.io.surface import write_surface
+from porolub.io.surface_map import DATA as MAP
+from porolub.io.surface_map import INDEX as MAP_INDEX
+from porolub.io.surface_map import write_surface_map
 from porolub.scene import Scene, write_resolved
-from porolub.solve.report import Report, Resume
+from porolub.solve.report import Report, Resume, SurfaceMap
+from porolub.together import on_root
 
 SUMMARY = "summary.json"
 HISTORY = "history.csv"
@@ -32,6 +42,7 @@ HISTORY_PLOTS = ("loads.png", "flows.png", "friction.png", "lengths.png")
 ANIMATION = "animation.gif"
 
 _PICTURES = (*PLOTS, *HISTORY_PLOTS, ANIMATION)
+_SURFACES = (SURFACE, MAP_INDEX, MAP)
 _FIELDS = ("fields.xdmf", "fields.h5")  # the description goes before what it describes
 
 
@@ -63,7 +74,7 @@ def begin_run(
     try:
         _remove(directory, SUMMARY, *_PICTURES)
         if not resume:
-            _remove(directory, CHECKPOINT, HISTORY, SURFACE, *_FIELDS)
+            _remove(directory, CHECKPOINT, HISTORY, *_SURFACES, *_FIELDS)
             remove_frames(directory)
         return _write_input(directory, scene, petsc_options)
     except OSError as error:
@@ -79,6 +90,7 @@ def write_results(
     *,
     plots: bool = True,
     history_written: bool = False,
+    comm: Any = MPI.COMM_SELF,
 ) -> None:
     """Write all results of a run but log.txt, which grows as the run goes (setup_logging).
 
@@ -87,24 +99,43 @@ def write_results(
     replaced as a whole. An earlier run's summary.json and what the new run has no data for are
     taken away first and summary.json comes after all data, so a directory that has one is
     complete. Raises SceneError where there can be no such directory and SolveError where a file
-    cannot be written.
+    cannot be written, on all ranks.
     """
-    prepare_directory(directory)
-    with reported(directory, "the results"):
-        _remove(directory, SUMMARY, *_PICTURES)
-        if report.surface is None:
-            _remove(directory, SURFACE)
-        toml = _write_input(directory, scene, petsc_options)
-        write_fields(directory, report.fields, _time(report))
-        if report.surface is not None:
-            write_surface(directory / SURFACE, report.surface)
-        if not history_written:
-            _write_only_state(directory, report, scene, toml)
-        write_summary(directory / SUMMARY, report.summary)
-        if plots:
-            from porolub.io.plots import plot_directory  # matplotlib takes a while to import
 
-            plot_directory(directory)
+    def begin() -> str:
+        prepare_directory(directory)
+        with reported(directory, "the results"):
+            _remove(directory, SUMMARY, *_PICTURES)
+            if report.surface is None:
+                _remove(directory, *_SURFACES)
+            elif not isinstance(report.surface, SurfaceMap):
+                _remove(directory, MAP_INDEX, MAP)
+            return _write_input(directory, scene, petsc_options)
+
+    def end() -> None:
+        with reported(directory, "the results"):
+            _write_surface(directory, report)
+            if not history_written:
+                write_history(directory / HISTORY, report.history)
+            write_summary(directory / SUMMARY, report.summary)
+            if plots:
+                from porolub.io.plots import plot_directory  # matplotlib takes a while to import
+
+                plot_directory(directory)
+
+    toml = on_root(comm, begin)
+    with reported(directory, "the results"):
+        write_fields(directory, report.fields, _time(report), comm)
+        if not history_written:
+            _write_only_state(directory, report, scene, toml, comm)
+    on_root(comm, end)
+
+
+def _write_surface(directory: Path, report: Report) -> None:
+    if report.surface is not None:
+        write_surface(directory / SURFACE, report.surface)
+    if isinstance(report.surface, SurfaceMap):
+        write_surface_map(directory, report.surface, _time(report))
 
 
 def _write_input(directory: Path, scene: Scene, petsc_options: str) -> str:
@@ -114,14 +145,19 @@ def _write_input(directory: Path, scene: Scene, petsc_options: str) -> str:
     return (directory / SCENE).read_text(encoding="utf-8")
 
 
-def _write_only_state(directory: Path, report: Report, scene: Scene, toml: str) -> None:
-    """Checkpoint and history of a steady run, whose state no time step led to."""
-    remove_frames(directory)
-    _remove(directory, CHECKPOINT)
+def _write_only_state(
+    directory: Path, report: Report, scene: Scene, toml: str, comm: Any
+) -> None:
+    """Checkpoint of a steady run, whose state no time step led to."""
+
+    def clear() -> None:
+        remove_frames(directory)
+        _remove(directory, CHECKPOINT)
+
+    on_root(comm, clear)
     if report.state is not None:
         resume = Resume(states=(report.state,), orders=(0,), step=0.0)
-        write_checkpoint(directory / CHECKPOINT, resume, toml, scene.digest())
-    write_history(directory / HISTORY, report.history)
+        write_checkpoint(directory / CHECKPOINT, resume, toml, scene.digest(), comm)
 
 
 def _time(report: Report) -> float:

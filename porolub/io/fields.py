@@ -5,38 +5,44 @@ from typing import Any
 
 import h5py
 import numpy as np
+from mpi4py import MPI
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing
-from porolub.io.hdf5 import new_hdf5
+from porolub.io.hdf5 import NewFile, new_hdf5
 from porolub.io.xdmf import add_grid, new_domain, write_document
+from porolub.solve.natural import bounds
 from porolub.solve.report import Array, FieldData
+from porolub.together import on_root
 
 UNITS = {"nodes": "m", "u": "m", "p": "Pa", "J": "1", "von_mises": "Pa", "flux": "m/s"}
 """SI unit of each dataset."""
 
 
-def write_fields(directory: Path, fields: FieldData, time: float = 0.0) -> None:
-    """Write fields.h5 and fields.xdmf; fields the scene does not have are left out.
+def write_fields(
+    directory: Path, fields: FieldData, time: float = 0.0, comm: Any = MPI.COMM_SELF
+) -> None:
+    """Write fields.h5 and fields.xdmf; fields the scene does not have are left out. Collective.
 
     Datasets: nodes (n, dim) in the reference configuration, cells (nc, nn), u and flux (n, 3;
     z is 0 in a two-dimensional scene), p, J, von_mises (n,); attribute ``unit`` on each, ``time``
     (s), ``cell_type`` and ``degree`` on the file. Raises OSError.
     """
     data = point_data(fields)
-    with replacing(directory / "fields.h5", directory / "fields.xdmf") as (h5, xdmf):
-        with new_hdf5(h5) as file:
+    files = directory / "fields.h5", directory / "fields.xdmf"
+    with replacing(*files, comm=comm) as (h5, xdmf):
+        with new_hdf5(h5, comm) as file:
             file.attrs["time"] = time
             put_mesh(file, fields)
             for name, values in data.items():
-                file.create_dataset(name, data=values, dtype="f8").attrs["unit"] = UNITS[name]
-            root, domain = new_domain()
-            add_grid(domain, "layer", ("fields.h5", file), ("fields.h5", file), data)
-        write_document(root, xdmf)
+                file.rows(name, values, "f8", unit=UNITS[name])
+        root, domain = new_domain()
+        add_grid(domain, "layer", ("fields.h5", file), ("fields.h5", file), data)
+        on_root(comm, lambda: write_document(root, xdmf))
 
 
 def read_fields(directory: Path) -> FieldData:
-    """Read what write_fields wrote (fields.h5 alone).
+    """Read all of what write_fields wrote (fields.h5 alone).
 
     Raises SceneError where the file is missing or damaged.
     """
@@ -62,18 +68,25 @@ def point_data(fields: FieldData) -> dict[str, Array]:
     return {name: values for name, values in found.items() if values is not None}
 
 
-def put_mesh(file: h5py.File, fields: FieldData) -> None:
-    """Write nodes and cells with their kind."""
+def put_mesh(file: NewFile, fields: FieldData) -> None:
+    """Add nodes and cells with their kind. Collective."""
     file.attrs.update(cell_type=fields.cell_type, degree=fields.degree)
-    file.create_dataset("cells", data=fields.cells, dtype="i8")
-    file.create_dataset("nodes", data=fields.nodes, dtype="f8").attrs["unit"] = UNITS["nodes"]
+    file.rows("cells", fields.cells, "i8")
+    file.rows("nodes", fields.nodes, "f8", unit=UNITS["nodes"])
 
 
-def get_mesh(file: h5py.File) -> dict[str, Any]:
-    """Return what put_mesh wrote by the names of FieldData. Raises OSError, KeyError."""
+def get_mesh(file: h5py.File, comm: Any = MPI.COMM_SELF) -> dict[str, Any]:
+    """Return this rank's block of what put_mesh wrote by the names of FieldData.
+
+    Raises OSError, KeyError.
+    """
+    nodes, cells = (
+        slice(*bounds(len(file[name]), comm.size)[comm.rank : comm.rank + 2].tolist())
+        for name in ("nodes", "cells")
+    )
     return {
-        "nodes": file["nodes"][()],
-        "cells": file["cells"][()],
+        "nodes": file["nodes"][nodes],
+        "cells": file["cells"][cells],
         "cell_type": str(file.attrs["cell_type"]),
         "degree": int(file.attrs["degree"]),
     }

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from porolub.errors import SceneError
 from porolub.io.atomic import reported, to_disk, write_text
-from porolub.io.summary import KEYS
+from porolub.io.summary import ORDER
 from porolub.solve.report import StepRecord
 
 _SAME_TIME = 1e-12  # relative: steps nearer than this are one
@@ -110,7 +110,7 @@ class HistoryWriter:
 def _in_order(keys: Iterable[str]) -> list[str]:
     """Each key once: those of the summary in its order, then the others as they come."""
     seen: Mapping[str, None] = dict.fromkeys(keys)
-    return [key for key in KEYS if key in seen] + [key for key in seen if key not in KEYS]
+    return [key for key in ORDER if key in seen] + [key for key in seen if key not in ORDER]
 
 
 def _cells(columns: Sequence[str], record: StepRecord) -> list[str]:

@@ -48,16 +48,20 @@ KEYS = (
     "versions",
 )
 """Keys every summary has, in this order; null where a scene does not define the number."""
+IN_SPACE = ("contact_area", "contact_width")
+"""Keys three-dimensional scenes have, behind contact_right."""
+ORDER = tuple(k for key in KEYS for k in ((key, *IN_SPACE) if key == "contact_right" else (key,)))
 
 
 def write_summary(path: Path, summary: dict[str, Any]) -> None:
-    """Write the summary: all of KEYS (null where missing), then any further keys.
+    """Write the summary: all of KEYS (null where missing), those of IN_SPACE there are, then any
+    further keys.
 
     What JSON has no number for (NaN, infinity) becomes null. Raises TypeError for a value that
     is no number, text, list or dict of those.
     """
-    ordered = {key: summary.get(key) for key in KEYS}
-    ordered |= {key: value for key, value in summary.items() if key not in KEYS}
+    ordered = {key: summary.get(key) for key in ORDER if key in KEYS or key in summary}
+    ordered |= {key: value for key, value in summary.items() if key not in ORDER}
     write_text(path, json.dumps(_plain(ordered), indent=2, allow_nan=False) + "\n")
 
 

@@ -6,9 +6,8 @@ readers copy the connectivity as it is), which is that of FieldData.cells.
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
-
-import h5py
 
 TOPOLOGY = {
     ("quad", 1): "Quadrilateral",
@@ -22,8 +21,9 @@ TOPOLOGY = {
 }
 """XDMF name of a cell type and degree."""
 
-Source = tuple[str, h5py.File]
-"""The place of an HDF5 file as seen from the XDMF file, and the file itself, open."""
+Source = tuple[str, Any]
+"""The place of an HDF5 file (or of a group in it, as frame.h5:/surface) as seen from the XDMF file,
+and what knows its attributes and datasets: an open h5py.File or Group, or a NewFile."""
 
 
 def new_domain() -> tuple[ElementTree.Element, ElementTree.Element]:
@@ -68,7 +68,7 @@ def add_grid(
     dim = mesh[1]["nodes"].shape[1]
     _item(ElementTree.SubElement(grid, "Geometry", GeometryType="XYZ"[:dim]), mesh, "nodes")
     for key in names:
-        rank = "Scalar" if data[1][key].ndim == 1 else "Vector"
+        rank = "Scalar" if len(data[1][key].shape) == 1 else "Vector"
         attribute = ElementTree.SubElement(
             grid, "Attribute", Name=key, AttributeType=rank, Center="Node"
         )
@@ -92,4 +92,4 @@ def _item(parent: ElementTree.Element, source: Source, name: str) -> None:
         Precision=str(file[name].dtype.itemsize),
         Dimensions=" ".join(map(str, file[name].shape)),
     )
-    item.text = f"{place}:/{name}"
+    item.text = f"{place}/{name}" if ":" in place else f"{place}:/{name}"

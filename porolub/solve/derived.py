@@ -108,10 +108,22 @@ class Derived:
                 "load_balance_error": error}
 
     def friction(self, loads: dict[str, Any]) -> dict[str, float | None]:
-        """mu = (mu_s L_s + T_f) / (L_s + L_f); the fluid's part from the film's shear stress."""
+        """mu = (mu_s L_s + T_f) / (L_s + L_f); the fluid's part from the film's shear stress.
+
+        Both act along the local direction of the motion and are summed over the reference surface,
+        as the loads are: for a plane that slides, the force that opposes it.  Where a body rotates
+        in 3D they are weighted with their distance from the axis over that of the farthest point
+        of the surface: the moment about the axis over the radius, for a barrel its largest.
+        """
         contact = self.model.scene.contact
         solid = (contact.friction if contact is not None else 0.0) * loads["load_solid"]
         fluid = 0.0
+        if solid and self.turns_in_space:
+            model = self.model
+            assert model.surface is not None
+            arms = self.arms(model.mesh.coordinates[self.mine])
+            pressure = self.nodal("l")[self.mine, 0] * model.surface.weights[self.mine]
+            solid = contact.friction * self.total(pressure @ arms) * model.scales.force
         if self.film is not None:
             at = self.surface
             h, _ = film_thickness(self.film.plane.gap(at))
@@ -120,15 +132,30 @@ class Derived:
             along = U / np.where(speed > 0, speed, 1.0)[..., None]
             slope = np.einsum("...d,...d->...", at.grad("p"), along)
             stress = self.film.law.shear_stress(h, slope, speed)
+            if self.turns_in_space:
+                stress = stress * self.arms(at.position)
             fluid = self.total((at.weights * stress).sum()) * self.model.scales.force
         return {"friction_coefficient": _ratio(solid + fluid, loads, "load_total"),
                 "friction_fluid": _ratio(fluid, loads, "load_fluid")}
+
+    @property
+    def turns_in_space(self) -> bool:
+        return self.model.mesh.dim == 3 and self.model.operation.kind == "rotation"
+
+    def arms(self, X: Array) -> Array:
+        """(...) distances of points (..., 3) from the axis over the surface's farthest one's."""
+        unit = replace(self.model.operation, speed=1.0)  # its velocities are distances
+        places = self.model.mesh.coordinates[self.mine]
+        farthest = self.extreme(np.linalg.norm(unit.body_velocity(places), axis=-1), True)
+        return np.linalg.norm(unit.body_velocity(X), axis=-1) / farthest
 
     def contact(self) -> dict[str, float | None]:
         model, length = self.model, self.model.scales.length
         out: dict[str, float | None] = dict.fromkeys(
             ("approach", "film_min", "contact_length", "contact_left", "contact_right",
              "penetration_length", "contact_pressure_max"))
+        if model.mesh.dim == 3:
+            out |= {"contact_area": None, "contact_width": None}
         if model.surface is None:
             return out
         circle = model.surface.circle
@@ -142,6 +169,8 @@ class Derived:
             return out
         pressure = self.contact_pressure()[self.mine]
         out["contact_pressure_max"] = self.extreme(pressure, True) * model.scales.pressure
+        if model.mesh.dim == 3:
+            out |= self._patch(pressure > 0.0)
         s = self.arc()[self.mine][pressure > 0.0] * length
         left, right = self.extreme(s, False), self.extreme(s, True)
         out["contact_length"] = 0.0
@@ -151,19 +180,32 @@ class Derived:
             out["contact_length"] = float(chord(right) - chord(left))
         return out
 
+    def _patch(self, closed: NDArray[np.bool_]) -> dict[str, float | None]:
+        """What only a contact in 3D has; ``closed`` tells of the nodes ``mine``."""
+        model, length = self.model, self.model.scales.length
+        assert model.surface is not None
+        z = model.mesh.coordinates[self.mine[closed], 2]
+        width = self.extreme(z, True) - self.extreme(z, False)
+        return {"contact_area": self.total(model.surface.weights[self.mine] @ closed) * length**2,
+                "contact_width": max(width, 0.0) * length}
+
     def exchange(self) -> Array:
-        """(nnode,) V, flow out of the layer per area (scaled), at the pressure nodes.
+        """(nnode,) V, flow out of the layer per area (scaled), at the pressure nodes."""
+        flow, weights = self.outflow(), self.pressure_weights()
+        heavy = weights > 1e-9 * weights.max(initial=0.0)  # corners of triangle6 weigh nothing
+        return np.divide(flow, weights, out=np.zeros_like(flow), where=heavy)
+
+    def outflow(self) -> Array:
+        """(nnode,) flow out of the layer (scaled) by pressure node.
 
         The consistent nodal flux: what the fluid mass rows of the layer alone leave over.
         """
         model = self.model
         out = np.zeros(len(model.mesh.coordinates))
-        if model.scene.pores is None:
-            return out
-        r = model.dofs.sum_local(model.system.local_residual(self.local, BULK))
-        nodes = np.intersect1d(self.nodes, model.dofs.nodes["p"])
-        weights = self.pressure_weights()
-        out[nodes] = -r[model.dofs.base["p"][nodes]] / weights[nodes]
+        if model.scene.pores is not None:
+            r = model.dofs.sum_local(model.system.local_residual(self.local, BULK))
+            nodes = np.intersect1d(self.nodes, model.dofs.nodes["p"])
+            out[nodes] = -r[model.dofs.base["p"][nodes]]
         return out
 
     def pressure_weights(self) -> Array:
@@ -188,8 +230,7 @@ class Derived:
         out: dict[str, float | None] = dict.fromkeys(keys, 0.0)
         through = 0.0
         if self.model.surface is not None and model.scene.pores is not None:
-            V, s = self.exchange()[self.mine], self.arc()[self.mine]
-            flow = V * self.pressure_weights()[self.mine]
+            flow, s = self.outflow()[self.mine], self.arc()[self.mine]
             unit = model.scales.volume_flow * model.scene.fluid_density
             # a node in the middle belongs to both sides, so that reversed motion mirrors them
             right = 0.5 + 0.5 * np.where(np.abs(s) < 1e-9, 0.0, np.sign(s))

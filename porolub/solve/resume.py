@@ -13,6 +13,7 @@ from porolub.errors import SceneError
 from porolub.solve.gather import gather_state, units_of
 from porolub.solve.lookback import Entry
 from porolub.solve.model import Model
+from porolub.solve.natural import from_blocks, to_blocks
 from porolub.solve.report import StateData
 
 Array = NDArray[np.float64]
@@ -20,21 +21,19 @@ SAME_PLACE = 1e-9  # of the layer's thickness: nodes nearer than this are the sa
 
 
 class Gathered:
-    """Entries as plain data; each is gathered once. Collective."""
+    """Entries as plain data, each rank its block; each is gathered once. Collective."""
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self._known: dict[float, StateData | None] = {}
+        self._known: dict[float, StateData] = {}
 
-    def states(self, entries: list[Entry]) -> tuple[StateData, ...] | None:
-        """The entries on rank 0, in the same order; None elsewhere."""
-        found = {e.time: self._known[e.time] if e.time in self._known else self._gather(e)
-                 for e in entries}
-        self._known = found
-        states = [found[e.time] for e in entries]
-        return None if states[0] is None else tuple(s for s in states if s is not None)
+    def states(self, entries: list[Entry]) -> tuple[StateData, ...]:
+        """The entries, in the same order."""
+        self._known = {e.time: self._known[e.time] if e.time in self._known else self._gather(e)
+                       for e in entries}
+        return tuple(self._known[e.time] for e in entries)
 
-    def _gather(self, entry: Entry) -> StateData | None:
+    def _gather(self, entry: Entry) -> StateData:
         x = self.model.dofs.vector()
         x.array[:] = entry.x
         state = gather_state(self.model, x, entry.time * self.model.scales.time)
@@ -42,13 +41,13 @@ class Gathered:
         return state
 
 
-def owned_values(model: Model, state: StateData | None) -> Array:
-    """The owned part of the solution vector that a state holds. Collective; state on rank 0.
+def owned_values(model: Model, state: StateData) -> Array:
+    """The owned part of the solution vector that a state holds. Collective.
 
     Raises SceneError where the state belongs to another mesh or to other unknowns.
     """
     mesh, dofs, comm = model.mesh, model.dofs, model.mesh.comm
-    state = comm.bcast(state, root=0)
+    count = mesh.global_node_count
     _refuse_other_mesh(model, state)
     local = np.zeros(dofs.size_local)
     scalars = {}
@@ -58,8 +57,9 @@ def owned_values(model: Model, state: StateData | None) -> Array:
         if f.degree == 0:
             scalars[name] = float(scaled[0, 0])
             continue
-        rows = np.searchsorted(numbers, mesh.natural_node[dofs.nodes[name]])
-        dofs.field(name, local)[...] = scaled[rows]
+        block = to_blocks(comm, numbers, scaled, count)
+        wanted = mesh.natural_node[dofs.nodes[name]]
+        dofs.field(name, local)[...] = from_blocks(comm, block, count, wanted)
     local = model.system.stored(local)
     x = dofs.vector()
     x.array[:] = local[dofs.owned]
@@ -71,12 +71,14 @@ def owned_values(model: Model, state: StateData | None) -> Array:
 
 
 def _refuse_other_mesh(model: Model, state: StateData) -> None:
-    mesh = model.mesh
+    mesh, comm = model.mesh, model.mesh.comm
+    count = mesh.global_node_count
     same = set(state.fields) == set(model.dofs.fields)
-    same = same and len(state.mesh_nodes) == mesh.global_node_count
+    same = same and comm.allreduce(len(state.mesh_nodes)) == count  # both alike on all ranks
     if same:
-        places = state.mesh_nodes[mesh.natural_node] / model.scales.length
-        same = bool(np.abs(places - mesh.coordinates).max(initial=0.0) < SAME_PLACE)
-    if not mesh.comm.allreduce(same, op=MPI.LAND):
+        places = from_blocks(comm, state.mesh_nodes, count, mesh.natural_node)
+        apart = np.abs(places / model.scales.length - mesh.coordinates).max(initial=0.0)
+        same = comm.allreduce(bool(apart < SAME_PLACE), op=MPI.LAND)
+    if not same:
         raise SceneError("The checkpoint belongs to another mesh or to other effects than the "
                          "scene's; run the scene anew.")

@@ -15,6 +15,7 @@ from porolub.solve.derived import Derived, scalars_of
 from porolub.solve.drive import drive
 from porolub.solve.gather import gather_fields, gather_surface
 from porolub.solve.newton import Newton
+from porolub.solve.linear import Linear
 from porolub.solve.options import fixed_steps, refuse_unused_together
 from porolub.solve.pacing import ease, landing, longest, next_picture, stops
 from porolub.solve.periodic import difference_of_periods
@@ -61,14 +62,14 @@ class TransientSolver:
         self._next = 0.0  # scaled: the step to try next
 
     # -- the run ------------------------------------------------------------------------------
-    def solve(self, resume: Resume | None = None, records: Sequence[StepRecord] = (),
-              resumed: bool = False) -> Outcome:
-        """From the start, or from a checkpoint (``resumed`` on all ranks, its data on rank 0).
+    def solve(self, resume: Resume | None = None,
+              records: Sequence[StepRecord] = ()) -> Outcome:
+        """From the start, or from a checkpoint (``resume``, of which each rank has its block).
 
         Raises SceneError for a scene the mesh or the model refuses.
         """
         self.records = list(records)
-        if resumed:
+        if resume is not None:
             self._resume(resume)
         else:
             failed = self._start()
@@ -176,7 +177,8 @@ class TransientSolver:
         drive(self.model, size * self.unit)
         if "v0" in dofs.fields and not self.scene.film:  # nothing holds a plane that only touches
             dofs.set_scalar("v0", x, PRESSED_IN)
-        newton = Newton(system, self.clock, self.watch.newton, self.give_up)
+        newton = Newton(system, self.clock, self.watch.newton, self.give_up,
+                        linear=Linear(self.model))
         newton.limits = dict(STEP_LIMIT)
         result = newton.solve(x, "from rest", max_iterations=60)
         self.totals.newton_iterations += newton.iterations
@@ -209,25 +211,17 @@ class TransientSolver:
         self._record(d, Step(newest.time, 0.0, 1, self.totals.newton_iterations))
         self._frames()
 
-    def _resume(self, resume: Resume | None) -> None:
+    def _resume(self, resume: Resume) -> None:
         """Take up where a checkpoint left off."""
-        known = None
-        if resume is not None:
-            states = [(s.time, resume.totals.get(f"gained {k}", 0.0))
-                      for k, s in enumerate(resume.states)]
-            known = (states, resume.step, resume.frame, resume.edges, resume.totals)
-        states, step, self._frame, edges, totals = self.comm.bcast(known, root=0)
-        length = self.steady.scales.length
-        self._edges = tuple(e / length for e in edges)
+        totals, self._frame = resume.totals, resume.frame
+        self._edges = tuple(e / self.steady.scales.length for e in resume.edges)
         self.model = self.steady.model(self._edges)
         self._create_stepper()
-        entries = []
-        for k, (t, gained) in enumerate(states):
-            state = resume.states[k] if resume is not None else None
-            entries.append((t / self.unit, owned_values(self.model, state), gained))
+        entries = [(state.time / self.unit, owned_values(self.model, state),
+                    totals.get(f"gained {k}", 0.0)) for k, state in enumerate(resume.states)]
         self.stepper.sizes = {n: totals[f"largest {n}"] for n in self.stepper.sizes}
         self.stepper.replay(entries)
-        self._next = step / self.unit
+        self._next = resume.step / self.unit
         self._frame_due = next_picture(self.scene, self.now * self.unit)
         for name, kind in Totals.__annotations__.items():
             setattr(self.totals, name, (int if kind == "int" else float)(totals[name]))
@@ -295,8 +289,7 @@ class TransientSolver:
         surface = gather_surface(self.model, self.stepper.x)
         number, self._frame = self._frame, self._frame + 1
         self._frame_due = next_picture(self.scene, self.now * self.unit)
-        frame = None if fields is None else FrameData(number, now, fields, surface)
-        self.watch.frame(frame)
+        self.watch.frame(FrameData(number, now, fields, surface))
 
     def _repeats(self) -> bool:
         """Whether the period that has just ended repeats the one before."""
@@ -310,12 +303,10 @@ class TransientSolver:
         log.info("period %d differs from the one before by %.2g", self.totals.periods, within)
         return bool(self.comm.bcast(within <= self.scene.time.repeats_within, root=0))
 
-    def resume(self) -> Resume | None:
-        """All that is needed to go on from here, on rank 0. Collective."""
+    def resume(self) -> Resume:
+        """All that is needed to go on from here. Collective."""
         entries = self.stepper.lookback.entries
         states = self._gathered.states(entries)
-        if states is None:
-            return None
         totals = {k: float(v) for k, v in vars(self.totals).items()}
         totals["linear_iterations"] += self.stepper.newton.linear_iterations
         totals |= {f"gained {k}": e.gained for k, e in enumerate(entries)}

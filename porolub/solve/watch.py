@@ -22,8 +22,8 @@ class Watch:
     begin: Callable[[float, float], None] = _ignore  # start, end (s)
     step: Callable[[StepRecord], None] = _ignore
     rejected: Callable[[float, float, str], None] = _ignore  # time, size (s), why
-    frame: Callable[[FrameData | None], None] = _ignore
-    checkpoint: Callable[[Callable[[], Resume | None]], None] = _ignore  # gathers when called
+    frame: Callable[[FrameData], None] = _ignore
+    checkpoint: Callable[[Callable[[], Resume]], None] = _ignore  # gathers when called
 
 
 @dataclass

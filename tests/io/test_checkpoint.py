@@ -113,7 +113,7 @@ def test_a_missing_file_is_refused(path: Path) -> None:
 
 def test_another_version_is_refused_by_its_number(path: Path, resume: Resume) -> None:
     write_checkpoint(path, resume, TOML, DIGEST)
-    path.write_bytes(path.read_bytes().replace(b"checkpoint 2", b"checkpoint 7", 1))
+    path.write_bytes(path.read_bytes().replace(b"checkpoint 3", b"checkpoint 7", 1))
     with pytest.raises(SceneError, match=f"is of version 7; this porolub reads {VERSION}"):
         read_checkpoint(path)
 

@@ -13,6 +13,7 @@ import pytest
 from porolub.errors import SceneError, SolveError
 from porolub.io.fields import UNITS, write_fields
 from porolub.io.frames import FrameWriter, read_frames, remove_frames
+from porolub.io.sparse import SparseFile
 from porolub.solve.report import FieldData, FrameData, SurfaceData
 
 ARRAYS = ("displacement", "pressure", "jacobian", "von_mises", "flux")
@@ -239,8 +240,8 @@ def test_a_write_that_fails_leaves_the_frames_so_far(
     def full(*_: object) -> None:
         raise OSError(28, "No space left on device")
 
-    for name in ("write_bytes", "replace"):
-        monkeypatch.setattr(Path, name, full)
+    for owner, name in ((SparseFile, "save"), (os, "fsync"), (Path, "replace")):
+        monkeypatch.setattr(owner, name, full)
         with pytest.raises(
             SolveError, match=r"frame_0007\.h5: this file cannot be written \(No sp"
         ):
@@ -260,7 +261,7 @@ def test_killed_between_a_frame_and_the_series_the_next_run_mends_it(
     def stop(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("porolub.io.frames._write_series", stop)
+    monkeypatch.setattr("porolub.io.frames.write_series", stop)
     with pytest.raises(KeyboardInterrupt):
         writer.write(replace(frames[0], number=7, time=0.25))
     monkeypatch.undo()

@@ -1,4 +1,4 @@
-"""Run by mpirun: gather one state on rank 0 and save it. Arguments: element, the .npz to write."""
+"""Run by mpirun: gather one state and save it from rank 0. Arguments: element, the .npz to write."""
 
 import sys
 from dataclasses import fields as names_of
@@ -14,17 +14,26 @@ def main(element: str, path: str) -> None:
     comm = MPI.COMM_WORLD
     with model_of(case1(14, 5, f"mesh.element={element}"), comm) as model:
         x = vector(model, waves(model.dofs))
-        everything = {"fields": gather_fields(model, x), "surface": gather_surface(model, x)}
+        fields, surface = gather_fields(model, x), gather_surface(model, x)
         state = gather_state(model, x)
-    assert all((value is None) == (comm.rank > 0) for value in (*everything.values(), state))
-    if state is None:
-        return
-    arrays = {f"{kind} {f.name}": getattr(value, f.name)
-              for kind, value in everything.items() for f in names_of(value)}
+        nodes = comm.allgather(len(fields.nodes))
+        assert max(nodes) - min(nodes) <= 1
+        assert len(fields.cells) < model.mesh.global_cell_count / comm.size + 1
+    assert (surface is None) == (comm.rank > 0)
+    arrays = {f"fields {f.name}": getattr(fields, f.name) for f in names_of(fields)}
     arrays = {name: a for name, a in arrays.items() if isinstance(a, np.ndarray)}
-    for name, (nodes, values) in state.fields.items():
-        arrays[f"state {name}"], arrays[f"nodes of {name}"] = values, nodes
-    np.savez(path, **arrays)
+    arrays["mesh nodes of the state"] = state.mesh_nodes
+    for name, (numbers, values) in state.fields.items():
+        arrays[f"nodes of {name}"] = numbers
+        if name != "v0":
+            arrays[f"state {name}"] = values
+    blocks = {name: comm.gather(a) for name, a in arrays.items()}
+    scalar = comm.allgather(state.fields["v0"][1].item())
+    assert len(set(scalar)) == 1
+    if comm.rank == 0:
+        whole = {name: np.concatenate(parts) for name, parts in blocks.items()}
+        whole |= {f"surface {f.name}": getattr(surface, f.name) for f in names_of(surface)}
+        np.savez(path, **whole, v0=scalar[0])
 
 
 main(*sys.argv[1:])

@@ -42,13 +42,11 @@ class Run:
     def __init__(self, wanted: Scene, resume: Resume | None = None) -> None:
         self.saved: list[Resume] = []
         self.solver = TransientSolver(wanted, MPI.COMM_SELF, Watch(checkpoint=self._save))
-        outcome = self.solver.solve(resume, [], resumed=resume is not None)
+        outcome = self.solver.solve(resume)
         assert outcome.converged, outcome.message
 
     def _save(self, gather: Any) -> None:
-        resume = gather()
-        assert resume is not None
-        self.saved.append(resume)
+        self.saved.append(gather())
 
     @property
     def last(self) -> StateData:
