@@ -25,6 +25,7 @@ class Field:
     """One unknown: ``degree`` 1 or 2 on nodes, 0 for a global scalar.
 
     support: ``body`` (all nodes of that degree), or the name of a boundary (its nodes only).
+    nodal: of a boundary, only the points of nodal quadrature on it.
     differential: its equation holds a time derivative (counts in the time error norm).
     """
 
@@ -33,6 +34,7 @@ class Field:
     degree: int
     support: str = "body"
     differential: bool = False
+    nodal: bool = False
 
 
 def sum_at_nodes(mesh: Mesh, shares: Array) -> Array:
@@ -44,6 +46,18 @@ def sum_at_nodes(mesh: Mesh, shares: Array) -> Array:
     total[nodes] = dofs.sum_local(shares[nodes].ravel()).reshape(-1, k)
     dofs.destroy()
     return total
+
+
+def nodal_points(mesh: Mesh, boundary: str) -> NDArray[np.int64]:
+    """Local nodes (k,) of a boundary that nodal quadrature of its degree uses, see nodal_weights.
+
+    All of them, but for quadratic triangles: there the middles of the sides, whose weights A/3
+    are exact to degree 2, while the corners' would be zero.
+    """
+    nodes = mesh.boundary_nodes(boundary)
+    if mesh.cell_type == "tet" and mesh.degree == 2:
+        return nodes[nodes >= mesh.nvertices]
+    return nodes
 
 
 class Dofs:
@@ -86,7 +100,8 @@ class Dofs:
         cells = mesh.cells if f.degree == mesh.degree else mesh.vertices_of_cells
         nodes = np.unique(cells)
         if f.support != "body":
-            nodes = np.intersect1d(nodes, mesh.boundary_nodes(f.support))
+            of_surface = nodal_points if f.nodal else Mesh.boundary_nodes
+            nodes = np.intersect1d(nodes, of_surface(mesh, f.support))
         return nodes.astype(np.int64)
 
     def _number(self, comm: PETSc.Comm) -> NDArray[np.int32]:

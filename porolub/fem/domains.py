@@ -146,8 +146,30 @@ class Domain:
         return np.divide(reach, size, out=np.zeros_like(size), where=size > 0)
 
 
+def nodal_shares(surface: Domain) -> Array:
+    """(ne, nodes per cell) weights of nodal quadrature on each facet of a surface.
+
+    The integral of each node's basis function; on quadratic triangles that of the functions 1 - 2
+    lambda of the sides, 1 in their middles and linear: never negative, the area in sum, also
+    where the triangles are curved.
+    """
+    mesh = surface.mesh
+    if mesh.cell_type != "tet" or mesh.degree == 1:
+        values = surface.tables(mesh.degree).value[surface.variant]
+        return np.einsum("eq,eqi->ei", surface.weights, values)
+    vertex = surface.tables(1).value[surface.variant]
+    ends = vertex[:, :, np.array(mesh.cell.edges)]  # (ne, nq, edges, 2)
+    of_faces = mesh.cell.face_nodes(2)
+    on_facet = np.zeros((len(of_faces), mesh.cells.shape[1]), bool)
+    np.put_along_axis(on_facet, of_faces, True, axis=1)
+    edges = slice(mesh.cell.vertices, None)
+    shares = np.zeros((len(surface), mesh.cells.shape[1]))
+    shares[:, edges] = np.einsum("eq,eqi->ei", surface.weights, 2.0 * ends.sum(axis=3) - 1.0)
+    return np.where(on_facet[surface.variant], shares, 0.0)
+
+
 class NodalDomain(Domain):
-    """The owned nodes of a boundary, each its own entity with one point: nodal quadrature."""
+    """Owned nodes of a boundary, each its own entity with one point: nodal quadrature."""
 
     def __init__(self, name: str, mesh: Mesh, nodes: NDArray[np.int64], weights: Array,
                  normal: Array) -> None:

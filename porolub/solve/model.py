@@ -11,8 +11,8 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 
 from porolub.errors import SceneError
-from porolub.fem.dofs import Dofs, sum_at_nodes
-from porolub.fem.domains import Domain, NodalDomain
+from porolub.fem.dofs import Dofs, nodal_points, sum_at_nodes
+from porolub.fem.domains import Domain, NodalDomain, nodal_shares
 from porolub.solve.conditions import constraints_of
 from porolub.solve.drive import operation_of
 from porolub.solve.effects import Law, body_terms, solid_law, surface_terms
@@ -145,16 +145,14 @@ def _domains(terms: list[Term], mesh: Any, surface: LubricatedSurface | None,
 
 
 def _nodal_weights(mesh: Any, surface: Domain) -> Array:
-    """(nnode,) integral over the surface of each node's basis function, summed over ranks."""
-    values = surface.tables(mesh.degree).value[surface.variant]
-    shares = np.einsum("eq,eqi->ei", surface.weights, values)
+    """(nnode,) weights of nodal quadrature on the surface, summed over ranks."""
     weights = np.zeros((len(mesh.coordinates), 1))
-    np.add.at(weights[:, 0], mesh.cells[surface.cells].ravel(), shares.ravel())
+    np.add.at(weights[:, 0], mesh.cells[surface.cells].ravel(), nodal_shares(surface).ravel())
     return sum_at_nodes(mesh, weights)[:, 0]
 
 
 def _nodal_domain(name: str, mesh: Any, surface: LubricatedSurface) -> NodalDomain:
-    nodes = mesh.boundary_nodes(surface.name)
+    nodes = nodal_points(mesh, surface.name)
     nodes = nodes[mesh.owned[nodes]]
     normal = np.broadcast_to(np.asarray(surface.plane.toward), (len(nodes), mesh.dim))
     return NodalDomain(name, mesh, nodes, surface.weights[nodes], normal)

@@ -116,8 +116,8 @@ def surface_circle(scene: Any, mesh: Any, boundary: str | None, length: float) -
 class LubricatedSurface:
     """The surface that faces the rigid plane (scaled).
 
-    domain: its facets; area: reference measure; weights: (nnode,) integral of each displacement
-    basis function over it; circle: the circle it lies on, if any.
+    domain: its facets; area: reference measure; weights: (nnode,) of nodal quadrature over it, in
+    sum the area; circle: the circle it lies on, if any.
     """
 
     name: str

@@ -1,6 +1,7 @@
 """Unilateral contact with Coulomb friction, by nodal quadrature on the lubricated surface.
 
-Unknown: contact pressure l at the displacement nodes.  Rows: min(l, c gap) = 0 at each node
+Unknown: contact pressure l at the displacement nodes (of quadratic triangles at the middles of the
+sides, see porolub.fem.dofs.nodal_points).  Rows: min(l, c gap) = 0 at each node
 (no penetration, l >= 0, l gap = 0) and the traction -l m on the skeleton, with friction
 mu l against the sliding direction if the scene wants it to shear the layer.
 """
@@ -31,7 +32,7 @@ class Contact:
     name: str = "contact"
 
     def fields(self) -> list[Field]:
-        return [Field("l", 1, self.degree, support=self.boundary)]
+        return [Field("l", 1, self.degree, support=self.boundary, nodal=True)]
 
     def reads(self) -> list[str]:
         return ["u"]
