@@ -19,7 +19,7 @@ def estimate_unknowns(scene: Scene) -> dict[str, int]:
     Raises SceneError if a mesh file cannot be read.
     """
     mesh = scene.mesh
-    layer, surface = _node_counts(scene)
+    layer, surface = node_counts(scene)
     count = {}
     if scene.solid is not None:
         count["displacement"] = scene.dimension * layer(mesh.degree)
@@ -38,7 +38,7 @@ def estimate_unknowns(scene: Scene) -> dict[str, int]:
     return count | {"total": sum(count.values())}
 
 
-def _node_counts(scene: Scene) -> tuple[Callable[[int], int], Callable[[int], int]]:
+def node_counts(scene: Scene) -> tuple[Callable[[int], int], Callable[[int], int]]:
     """Return the numbers of nodes in the layer and on the lubricated surface, by degree.
 
     A structured mesh of n x m elements of degree d has (d n + 1)(d m + 1) nodes.
