@@ -70,8 +70,15 @@ def sector_file(
     return path
 
 
-def box_file(path: Path, *, order: int, hexahedra: bool) -> Path:
-    """An unstructured mesh of the box 2 x 1 x 3 mm; the sides have the names of a block."""
+BOX = {"left": (0, 0.0), "right": (0, 2e-3), "bottom": (1, 0.0), "top": (1, 1e-3)}
+BOX |= {"front": (2, 0.0), "back": (2, 3e-3)}
+
+
+def box_file(
+    path: Path, *, order: int, hexahedra: bool, names: dict[str, str] | None = None
+) -> Path:
+    """An unstructured mesh of the box 2 x 1 x 3 mm; the sides have the names of a block, or what
+    `names` calls them instead."""
     gmsh.initialize(interruptible=False)
     try:
         gmsh.option.setNumber("General.Terminal", 0)
@@ -80,18 +87,62 @@ def box_file(path: Path, *, order: int, hexahedra: bool) -> Path:
         gmsh.model.occ.synchronize()
         if hexahedra:
             gmsh.model.mesh.setTransfiniteAutomatic()
-        sides = {"left": (0, 0.0), "right": (0, 2e-3), "bottom": (1, 0.0), "top": (1, 1e-3)}
-        sides |= {"front": (2, 0.0), "back": (2, 3e-3)}
-        for tag, (name, (axis, value)) in enumerate(sides.items(), start=1):
+        for tag, (side, (axis, value)) in enumerate(BOX.items(), start=1):
             faces = [
                 face
                 for _, face in gmsh.model.getEntities(2)
                 if abs(gmsh.model.occ.getCenterOfMass(2, face)[axis] - value) < 1e-9
             ]
-            gmsh.model.addPhysicalGroup(2, faces, tag, name)
+            gmsh.model.addPhysicalGroup(2, faces, tag, (names or {}).get(side, side))
         gmsh.model.addPhysicalGroup(3, [1], 9, "layer")
         gmsh.model.mesh.generate(3)
         gmsh.model.mesh.setOrder(order)
+        gmsh.write(str(path))
+    finally:
+        gmsh.finalize()
+    return path
+
+
+def barrel_file(
+    path: Path,
+    *,
+    hexahedra: bool,
+    counts: tuple[int, int, int] = (12, 2, 3),
+    width: float = 4e-3,
+    order: int = 2,
+) -> Path:
+    """The sector drawn out in z from -width/2 by gmsh: hexahedra, or tetrahedra in their place."""
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setNumber("Mesh.ElementOrder", order)
+        geo = gmsh.model.geo
+        z = -width / 2
+        centre = geo.addPoint(0, RADIUS, z)
+        a, b, c, d = (
+            geo.addPoint(r * np.sin(t), RADIUS - r * np.cos(t), z)
+            for r in (RADIUS, RADIUS - THICKNESS)
+            for t in ((-ANGLE, ANGLE) if r == RADIUS else (ANGLE, -ANGLE))
+        )
+        lines = [
+            *(geo.addCircleArc(a, centre, b), geo.addLine(b, c)),
+            *(geo.addCircleArc(c, centre, d), geo.addLine(d, a)),
+        ]
+        for line, many in zip(lines, (counts[0], counts[1]) * 2, strict=True):
+            geo.mesh.setTransfiniteCurve(line, many + 1)
+        face = geo.addPlaneSurface([geo.addCurveLoop(lines)])
+        geo.mesh.setTransfiniteSurface(face)
+        if hexahedra:
+            geo.mesh.setRecombine(2, face)
+        drawn = geo.extrude([(2, face)], 0, 0, width, [counts[2]], recombine=hexahedra)
+        geo.synchronize()
+        names = ("lubricated", "outlet", "bone", "inlet")
+        sides = dict(zip(names, (tag for _, tag in drawn[2:6]), strict=True))
+        sides |= {"front": face, "back": drawn[0][1]}
+        for name, tag in sides.items():
+            gmsh.model.addPhysicalGroup(2, [tag], name=name)
+        gmsh.model.addPhysicalGroup(3, [drawn[1][1]], name="layer")
+        gmsh.model.mesh.generate(3)
         gmsh.write(str(path))
     finally:
         gmsh.finalize()
