@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from pydantic import ValidationError
 
-from porolub.scene import Scene, effects, load_scene, scene_from_dict
+from porolub.scene import Scene, effects, estimate_unknowns, load_scene, scene_from_dict
 from porolub.scene.derived import derived
 from porolub.scene.geometry import Sector
 from tests.scene.scenes import CUBE, ROLLING, changed
@@ -170,3 +170,17 @@ def test_case_1_variants_differ_from_it_only_where_they_say() -> None:
     assert differences("case1_bonded_graded") == graded | bonded
     # the film at the inlet decides Appendix A's fluid load, so it ships graded
     assert differences("appendix_a") == slides | graded
+
+
+def test_the_cluster_s_joint_is_that_of_the_desk_on_a_finer_mesh() -> None:
+    desk, cluster = (load_scene(JOBS / f"{n}.toml") for n in ("joint3d", "joint3d_cluster"))
+    mesh = {key: getattr(cluster.mesh, key) for key in ("along", "across", "deep")}
+    refined = desk.model_copy(update={"mesh": desk.mesh.model_copy(update=mesh)})
+    assert refined.resolved() | {"scene": None} == cluster.resolved() | {"scene": None}
+    assert 150_000 < estimate_unknowns(desk)["total"] < 250_000
+    assert 18e6 < estimate_unknowns(cluster)["total"] < 25e6
+
+
+def test_the_batch_script_runs_the_cluster_s_scene() -> None:
+    text = (JOBS / "joint3d.slurm").read_text()
+    assert "run jobs/joint3d_cluster.toml" in text
