@@ -5,11 +5,33 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from mpi4py import MPI
-
 from porolub.errors import PorolubError
 
 Failure = PorolubError | OSError
+
+
+class Alone:
+    """A communicator of one rank, for programs that start no MPI: what is used of mpi4py's."""
+
+    rank, size = 0, 1
+
+    def bcast(self, value: Any, root: int = 0) -> Any:
+        return value
+
+    def gather(self, value: Any, root: int = 0) -> list[Any]:
+        return [value]
+
+    def allgather(self, value: Any) -> list[Any]:
+        return [value]
+
+    def allreduce(self, value: Any) -> Any:
+        return value
+
+    def scan(self, value: Any) -> Any:
+        return value
+
+
+ALONE = Alone()
 
 
 def on_root(comm: Any, work: Callable[[], Any]) -> Any:
@@ -40,7 +62,7 @@ def on_each(comm: Any, work: Callable[[], Any]) -> Any:
         result = work()
     except (PorolubError, OSError) as error:
         problem = error
-    first = comm.allreduce(comm.size if problem is None else comm.rank, op=MPI.MIN)
+    first = min(comm.allgather(comm.size if problem is None else comm.rank))
     if first < comm.size:
         raise comm.bcast(problem, root=first)
     return result

@@ -1,11 +1,12 @@
 """animation.gif: pressure in the layer, profiles along its surface and loads, as time goes by."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from textwrap import shorten
 from typing import Protocol
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from PIL import Image
@@ -15,11 +16,13 @@ from porolub.io.atomic import replacing
 from porolub.io.directory import ANIMATION
 from porolub.io.draw_fields import can_draw
 from porolub.io.frames import read_frames
+from porolub.io.map_panel import MapPanel
 from porolub.io.panels import CoursePanel, FieldPanel, Limits, SurfacePanel
 from porolub.io.plots import history_of, plane_height, read_scene
+from porolub.io.section import Chart, middle
 from porolub.io.time_axis import Course
 from porolub.scene import Scene
-from porolub.solve.report import Array, FrameData
+from porolub.solve.report import Array, FrameData, SurfaceData, SurfaceMap
 
 MOST_FRAMES = 60
 LARGEST = 10_000_000
@@ -64,8 +67,8 @@ def animate_directory(directory: Path, period: int | None = None) -> Path:
 def animate(path: Path, frames: Frames, course: Course, scene: Scene | None, title: str) -> None:
     """Write the frames within the course's span as a GIF that goes on for ever.
 
-    Raises SceneError where there are fewer than two frames or they are not two-dimensional, and
-    OSError.
+    Raises SceneError where there are fewer than two frames or they are of a body without a
+    lubricated surface, and OSError.
     """
     numbers = chosen(np.asarray(frames.times), course)
     if len(numbers) < 2:
@@ -73,8 +76,12 @@ def animate(path: Path, frames: Frames, course: Course, scene: Scene | None, tit
             f"an animation needs two pictures or more from {course.span.start:g} to "
             f"{course.span.end:g} s and the run kept {len(numbers)}; time.frames says how many."
         )
-    if not can_draw(frames.load(numbers[0]).fields):
-        raise SceneError("an animation shows two-dimensional scenes; open series.xdmf in ParaView.")
+    first = frames.load(numbers[0])
+    if not (can_draw(first.fields) or isinstance(first.surface, SurfaceMap)):
+        raise SceneError(
+            "an animation of a body shows its lubricated surface, and this scene has none; open "
+            "series.xdmf in ParaView."
+        )
     pictures = list(draw(frames, numbers, course, scene, title))
     write_gif(path, pictures, pauses(np.asarray(frames.times)[numbers], course))
 
@@ -95,35 +102,70 @@ def chosen(times: Array, course: Course) -> list[int]:
 def draw(frames: Frames, numbers: list[int], course: Course, scene: Scene | None, title: str
          ) -> Iterator[Image.Image]:  # fmt: skip
     """Draw the frames of these numbers, one after the other."""
-    limits = Limits()
-    for k in numbers:
-        limits.add(frames.load(k))
-    first = frames.load(numbers[0])
-    planes = [plane_height(scene, _at(course, "approach", frames.times[k])) for k in numbers]
-    known = [plane for plane in planes if plane is not None]
-    surface = first.surface is not None
+    surface = frames.load(numbers[0]).surface
     loads = course.has("load_solid", "load_fluid")
-    figure = Figure(figsize=(9.0, 2.4 + 2.9 * (surface + loads)), dpi=100, layout="constrained")
+    count = 1 + (surface is not None) + loads
+    figure = Figure(figsize=(9.0, 2.4 + 2.9 * (count - 1)), dpi=100, layout="constrained")
     canvas = FigureCanvasAgg(figure)
-    axes = list(figure.subplots(1 + surface + loads, 1, squeeze=False)[:, 0])
-    reach = (min(known), max(known)) if known else None
-    mover = "body" if course.rotates else "plane"
-    field = FieldPanel(figure, axes[0], first, limits, reach, mover)
-    profiles = SurfacePanel(axes[1], limits) if surface else None
+    axes = list(figure.subplots(count, 1, squeeze=False)[:, 0])
+    setup = _layer if surface is None or isinstance(surface, SurfaceData) else _surface
+    show = setup(figure, axes, frames, numbers, course, scene)
     marker = CoursePanel(axes[-1], course) if loads else None
     axes[0].set_title(shorten(title, 80, placeholder=" ..."), loc="left", fontsize=13,
                       parse_math=False)  # fmt: skip
-    for k, plane in zip(numbers, planes, strict=True):
+    for k in numbers:
         frame = frames.load(k)
-        field.show(frame, plane, _motion(course, frame.time))
-        if profiles is not None and frame.surface is not None:
-            profiles.show(frame.surface)
+        show(frame)
         if marker is not None:
             marker.show(frame.time)
         axes[0].set_title(_now(course, frame.time), loc="right", fontsize=12)
         canvas.draw()
         figure.set_layout_engine("none")  # as laid out for the first frame: nothing may jump
         yield Image.fromarray(np.asarray(canvas.buffer_rgba())[..., :3].copy())
+
+
+def _layer(figure: Figure, axes: list[Axes], frames: Frames, numbers: list[int], course: Course,
+           scene: Scene | None) -> Callable[[FrameData], None]:  # fmt: skip
+    """Set up the panels of a two-dimensional layer; return what shows a frame in them."""
+    limits = Limits()
+    for k in numbers:
+        limits.add(frames.load(k))
+
+    def height(time: float) -> float | None:
+        return plane_height(scene, _at(course, "approach", time))
+
+    heights = [plane for k in numbers if (plane := height(frames.times[k])) is not None]
+    reach = (min(heights), max(heights)) if heights else None
+    first = frames.load(numbers[0])
+    field = FieldPanel(figure, axes[0], first, limits, reach, "body" if course.rotates else "plane")
+    profiles = SurfacePanel(axes[1], limits) if first.surface is not None else None
+
+    def show(frame: FrameData) -> None:
+        field.show(frame, height(frame.time), _motion(course, frame.time))
+        if profiles is not None and isinstance(frame.surface, SurfaceData):
+            profiles.show(frame.surface)
+
+    return show
+
+
+def _surface(figure: Figure, axes: list[Axes], frames: Frames, numbers: list[int], course: Course,
+             scene: Scene | None) -> Callable[[FrameData], None]:  # fmt: skip
+    """As ``_layer`` of a body: its surface from below, and the profiles along a line on it."""
+    surfaces = [s for k in numbers if isinstance(s := frames.load(k).surface, SurfaceMap)]
+    chart = Chart.of(surfaces[0])
+    aside = middle(chart, scene)[0]
+    limits = Limits()
+    for surface in surfaces:
+        limits.add_surface(chart.showing(surface).profile(aside=aside))
+    panel = MapPanel(figure, axes[0], chart, surfaces, limits.stretch(), aside)
+    profiles = SurfacePanel(axes[1], limits)
+
+    def show(frame: FrameData) -> None:
+        assert isinstance(frame.surface, SurfaceMap)
+        panel.show(frame.surface)
+        profiles.show(chart.showing(frame.surface).profile(aside=aside))
+
+    return show
 
 
 def pauses(times: Array, course: Course) -> Array:

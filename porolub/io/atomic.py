@@ -6,14 +6,12 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from mpi4py import MPI
-
 from porolub.errors import SolveError
-from porolub.together import on_root
+from porolub.together import ALONE, on_root
 
 
 @contextmanager
-def replacing(*targets: Path, comm: Any = MPI.COMM_SELF) -> Iterator[tuple[Path, ...]]:
+def replacing(*targets: Path, comm: Any = ALONE) -> Iterator[tuple[Path, ...]]:
     """Yield a temporary path for each target; when the block ends well they take their places.
 
     All targets lie in one directory. If the block raises, the targets are as they were. Of

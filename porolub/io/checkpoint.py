@@ -24,14 +24,13 @@ from typing import Any
 
 import h5py
 import numpy as np
-from mpi4py import MPI
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing, reported
 from porolub.io.hdf5 import NewFile, new_hdf5
 from porolub.solve.natural import bounds
 from porolub.solve.report import Resume, StateData
-from porolub.together import on_each, on_root
+from porolub.together import ALONE, on_each, on_root
 
 VERSION = 3
 PIECE = 1 << 20
@@ -40,7 +39,7 @@ _HEADER = re.compile(rb"porolub checkpoint (\d+)\n([0-9a-f]{64})\n")
 
 
 def write_checkpoint(
-    path: Path, resume: Resume, scene_toml: str, digest: str, comm: Any = MPI.COMM_SELF
+    path: Path, resume: Resume, scene_toml: str, digest: str, comm: Any = ALONE
 ) -> None:
     """Write what a run goes on from; whenever it is interrupted, the old file or the new is there.
 
@@ -48,7 +47,7 @@ def write_checkpoint(
     (ValueError otherwise). Collective: each rank gives its block; what is not of nodes counts on
     rank 0. Raises SolveError where the file cannot be written.
     """
-    if not comm.allreduce(_alike(resume), op=MPI.LAND):
+    if not all(comm.allgather(_alike(resume))):
         raise ValueError("the states of a checkpoint differ in their mesh, fields or number")
     with reported(path), replacing(path, comm=comm) as (temporary,):
         with new_hdf5(temporary, comm, _USER_BLOCK) as file:
@@ -59,7 +58,7 @@ def write_checkpoint(
         on_root(comm, lambda: _begin_with(temporary, header))
 
 
-def read_checkpoint(path: Path, comm: Any = MPI.COMM_SELF) -> tuple[Resume, dict[str, Any]]:
+def read_checkpoint(path: Path, comm: Any = ALONE) -> tuple[Resume, dict[str, Any]]:
     """Read what to go on from, each rank its block, and the tables of the resolved scene.
 
     Collective. Raises SceneError for a file that is missing, damaged, no checkpoint or of another

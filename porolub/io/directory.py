@@ -12,8 +12,6 @@ import os
 from pathlib import Path
 from typing import Any
 
-from mpi4py import MPI
-
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing, reported, write_text
 from porolub.io.checkpoint import write_checkpoint
@@ -27,7 +25,7 @@ from porolub.io.surface_map import INDEX as MAP_INDEX
 from porolub.io.surface_map import write_surface_map
 from porolub.scene import Scene, write_resolved
 from porolub.solve.report import Report, Resume, SurfaceMap
-from porolub.together import on_root
+from porolub.together import ALONE, on_root
 
 SUMMARY = "summary.json"
 HISTORY = "history.csv"
@@ -37,11 +35,13 @@ SCENE = "scene.resolved.toml"
 OPTIONS = "petsc.options"
 PLOTS = ("von_mises.png", "pressure.png", "surface.png", "flow.png")
 """Pictures of the last state."""
+MAP_PLOTS = ("profile_s.png", "profile_z.png")
+"""Further ones of a body, whose surface.png and flow.png are maps."""
 HISTORY_PLOTS = ("loads.png", "flows.png", "friction.png", "lengths.png")
 """Pictures of how it came about."""
 ANIMATION = "animation.gif"
 
-_PICTURES = (*PLOTS, *HISTORY_PLOTS, ANIMATION)
+_PICTURES = (*PLOTS, *MAP_PLOTS, *HISTORY_PLOTS, ANIMATION)
 _SURFACES = (SURFACE, MAP_INDEX, MAP)
 _FIELDS = ("fields.xdmf", "fields.h5")  # the description goes before what it describes
 
@@ -90,7 +90,7 @@ def write_results(
     *,
     plots: bool = True,
     history_written: bool = False,
-    comm: Any = MPI.COMM_SELF,
+    comm: Any = ALONE,
 ) -> None:
     """Write all results of a run but log.txt, which grows as the run goes (setup_logging).
 

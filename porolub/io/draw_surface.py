@@ -28,8 +28,11 @@ THINNEST = 1e-9
 _ALONG = "position along the surface, from its middle [mm]"
 
 
-def draw_pressures(surface: SurfaceData, title: str) -> Figure:
-    """Draw fluid and contact pressure (kPa, left) and the film thickness (um, right, log)."""
+def draw_pressures(surface: SurfaceData, title: str, along: str = _ALONG) -> Figure:
+    """Draw fluid and contact pressure (kPa, left) and the film thickness (um, right, log).
+
+    along: what the position is called.
+    """
     figure, (ax,) = new_figure(f"Lubricated surface ({title})", legend=True)
     s = 1e3 * surface.s
     handles = _contact_zone(ax, surface)
@@ -39,7 +42,7 @@ def draw_pressures(surface: SurfaceData, title: str) -> Figure:
         handles += ax.plot(
             s, 1e-3 * surface.p_c, color=VERMILLION, lw=2, ls="--", label="contact pressure $p_c$"
         )
-    label(ax, _ALONG, "pressure [kPa]")
+    label(ax, along, "pressure [kPa]")
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)
     ax.margins(x=0.01)
     film = np.where(surface.h > THINNEST, surface.h, np.nan)

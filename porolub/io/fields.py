@@ -1,11 +1,12 @@
 """Fields on all nodes: fields.h5 holds the arrays, fields.xdmf tells ParaView and meshio."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import h5py
 import numpy as np
-from mpi4py import MPI
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing
@@ -13,14 +14,14 @@ from porolub.io.hdf5 import NewFile, new_hdf5
 from porolub.io.xdmf import add_grid, new_domain, write_document
 from porolub.solve.natural import bounds
 from porolub.solve.report import Array, FieldData
-from porolub.together import on_root
+from porolub.together import ALONE, on_root
 
 UNITS = {"nodes": "m", "u": "m", "p": "Pa", "J": "1", "von_mises": "Pa", "flux": "m/s"}
 """SI unit of each dataset."""
 
 
 def write_fields(
-    directory: Path, fields: FieldData, time: float = 0.0, comm: Any = MPI.COMM_SELF
+    directory: Path, fields: FieldData, time: float = 0.0, comm: Any = ALONE
 ) -> None:
     """Write fields.h5 and fields.xdmf; fields the scene does not have are left out. Collective.
 
@@ -46,14 +47,26 @@ def read_fields(directory: Path) -> FieldData:
 
     Raises SceneError where the file is missing or damaged.
     """
+    with _opened(directory) as file:
+        return get_fields(get_mesh(file), file)
+
+
+@contextmanager
+def _opened(directory: Path) -> Iterator[h5py.File]:
     path = directory / "fields.h5"
     if not path.is_file():
         raise SceneError(f"{directory}: there is no fields.h5, so this is no output of a run.")
     try:
         with h5py.File(path, "r") as file:
-            return get_fields(get_mesh(file), file)
+            yield file
     except (OSError, KeyError, ValueError) as error:
         raise SceneError(f"{path}: this file is damaged or was not written by porolub.") from error
+
+
+def is_flat(directory: Path) -> bool:
+    """Whether the fields there are of a two-dimensional scene. Raises as read_fields."""
+    with _opened(directory) as file:
+        return bool(file["nodes"].shape[1] == 2)
 
 
 def point_data(fields: FieldData) -> dict[str, Array]:
@@ -75,7 +88,7 @@ def put_mesh(file: NewFile, fields: FieldData) -> None:
     file.rows("nodes", fields.nodes, "f8", unit=UNITS["nodes"])
 
 
-def get_mesh(file: h5py.File, comm: Any = MPI.COMM_SELF) -> dict[str, Any]:
+def get_mesh(file: h5py.File, comm: Any = ALONE) -> dict[str, Any]:
     """Return this rank's block of what put_mesh wrote by the names of FieldData.
 
     Raises OSError, KeyError.

@@ -40,6 +40,17 @@ def new_figure(
     return figure, axes
 
 
+def heading(figure: Figure, title: str) -> None:
+    """Put a title above a figure of several panels."""
+    figure.suptitle(
+        shorten(title, 100, placeholder=" ..."),
+        x=0.01,
+        ha="left",
+        fontsize=_FONT + 1,
+        parse_math=False,
+    )
+
+
 def tidy(ax: Axes) -> None:
     """Give the axes readable figures and no frame where nothing is read off."""
     ax.tick_params(labelsize=_FONT - 1)

@@ -13,7 +13,6 @@ from typing import Any
 
 import h5py
 import numpy as np
-from mpi4py import MPI
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing
@@ -24,6 +23,7 @@ from porolub.io.surface_map import UNITS as SURFACE_UNITS
 from porolub.io.surface_map import get_surface, get_surface_mesh
 from porolub.io.xdmf import add_collection, add_grid, new_domain, write_document
 from porolub.solve.report import FieldData, FrameData, SurfaceData, SurfaceMap
+from porolub.together import ALONE
 
 FOLDER = "frames"
 MESH = "mesh.h5"
@@ -124,8 +124,8 @@ def time_of(path: Path) -> float:
         raise damaged(path) from error
 
 
-def mesh_of(directory: Path, comm: Any = MPI.COMM_SELF) -> dict[str, Any]:
-    """This rank's block of the mesh of all frames; ``surface``: that of a body's surface or None."""
+def mesh_of(directory: Path, comm: Any = ALONE) -> dict[str, Any]:
+    """This rank's block of the frames' mesh; ``surface``: that of a body's surface or None."""
     path = directory / FOLDER / MESH
     try:
         with h5py.File(path, "r") as file:
@@ -142,10 +142,10 @@ def damaged(path: Path) -> SceneError:
 
 def same_mesh(mesh: dict[str, Any], fields: FieldData, comm: Any) -> bool:
     """Whether this rank's block of fields is on that of the mesh, but for rounding. Collective."""
-    low = comm.allreduce(fields.nodes.min(initial=np.inf), op=MPI.MIN)
-    high = comm.allreduce(fields.nodes.max(initial=-np.inf), op=MPI.MAX)
+    low = min(comm.allgather(fields.nodes.min(initial=np.inf)))
+    high = max(comm.allgather(fields.nodes.max(initial=-np.inf)))
     same = mesh["nodes"].shape == fields.nodes.shape and mesh["cells"].shape == fields.cells.shape
     if same:
         apart = np.abs(mesh["nodes"] - fields.nodes).max(initial=0.0)
         same = apart <= _SAME_PLACE * (high - low) and np.array_equal(mesh["cells"], fields.cells)
-    return bool(comm.allreduce(same, op=MPI.LAND))
+    return all(comm.allgather(bool(same)))

@@ -11,7 +11,6 @@ from typing import Any
 
 import h5py
 import numpy as np
-from mpi4py import MPI
 
 from porolub.errors import SceneError
 from porolub.io.atomic import replacing, reported
@@ -34,7 +33,7 @@ from porolub.io.frame_files import (
 from porolub.io.hdf5 import new_hdf5
 from porolub.io.surface_map import put_surface_mesh
 from porolub.solve.report import Array, FrameData, SurfaceMap
-from porolub.together import on_each, on_root
+from porolub.together import ALONE, on_each, on_root
 
 
 class FrameWriter:
@@ -43,7 +42,7 @@ class FrameWriter:
     All of it is collective; the files are as on one rank.
     """
 
-    def __init__(self, directory: Path, first: int = 0, comm: Any = MPI.COMM_SELF) -> None:
+    def __init__(self, directory: Path, first: int = 0, comm: Any = ALONE) -> None:
         """Go on with frame number ``first``; frames from there on are taken away: all with 0.
 
         Raises SceneError where a frame that stays is damaged and SolveError where the directory

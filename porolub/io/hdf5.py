@@ -16,11 +16,10 @@ from typing import Any
 
 import h5py
 import numpy as np
-from mpi4py import MPI
 from numpy.typing import NDArray
 
 from porolub.io.sparse import SparseFile
-from porolub.together import on_each, on_root
+from porolub.together import ALONE, on_each, on_root
 
 Rows = NDArray[Any]
 _AT_ONCE = 1 << 30  # bytes; the operating system writes no more than 2 GB at a time
@@ -79,7 +78,7 @@ class NewFile:
 
 
 @contextmanager
-def new_hdf5(path: Path, comm: Any = MPI.COMM_SELF, user_block: int = 0) -> Iterator[NewFile]:
+def new_hdf5(path: Path, comm: Any = ALONE, user_block: int = 0) -> Iterator[NewFile]:
     """Yield an empty file; when the block ends well it is written to ``path``. Collective.
 
     ``user_block``: zero bytes in front that are no HDF5. The block must end alike on all ranks.

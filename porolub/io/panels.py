@@ -45,6 +45,8 @@ class Limits:
     pressure: tuple[float, float] = (0.0, -np.inf)
     film: tuple[float, float] = (np.inf, -np.inf)
     wet: bool = False
+    ends: tuple[float, float] = (np.inf, -np.inf)
+    """Of the surface, x in m."""
     moves: Array | None = None
     """(nodes, 4) least and greatest x and y of each node."""
 
@@ -55,27 +57,36 @@ class Limits:
         place = frame.fields.nodes + frame.fields.displacement
         low, high = (place, place) if self.moves is None else np.split(self.moves, 2, axis=1)
         self.moves = np.hstack([np.minimum(low, place), np.maximum(high, place)])
-        if frame.surface is not None:
-            self._add_surface(frame.surface)
+        if isinstance(frame.surface, SurfaceData):
+            self.add_surface(frame.surface)
 
-    def _add_surface(self, surface: SurfaceData) -> None:
+    def add_surface(self, surface: SurfaceData) -> None:
+        """Take in profiles alone."""
         both = np.maximum(np.abs(surface.p), surface.p_c)
         self.happens = _wider(self.happens, surface.x[both > 0.02 * both.max(initial=0.0)])
         self.pressure = _wider(_wider(self.pressure, surface.p), surface.p_c)
         self.film = _wider(self.film, surface.h[surface.h > THINNEST])
         self.wet |= bool(surface.p.any() or surface.Q.any())
+        self.ends = _wider(self.ends, surface.x)
 
     def box(self) -> tuple[float, float, float, float]:
         """Return where things happen: x from and to, y from and to, in m."""
         assert self.moves is not None
         left, bottom, right, top = self.moves.T
-        start, end = left.min(), right.max()
+        start, end = self.stretch()
+        inside = (right >= start) & (left <= end)
+        return start, end, bottom[inside].min(), top[inside].max()
+
+    def stretch(self) -> tuple[float, float]:
+        """Return where things happen: x from and to, in m."""
+        start, end = self.ends
+        if self.moves is not None:
+            start, end = self.moves[:, 0].min(), self.moves[:, 2].max()
         if self.happens[0] < self.happens[1]:
             margin = 0.2 * (self.happens[1] - self.happens[0])
             start = max(start, self.happens[0] - margin)
             end = min(end, self.happens[1] + margin)
-        inside = (right >= start) & (left <= end)
-        return start, end, bottom[inside].min(), top[inside].max()
+        return start, end
 
 
 def _wider(limits: tuple[float, float], values: Array) -> tuple[float, float]:
@@ -169,7 +180,7 @@ class SurfacePanel:
 
     def __init__(self, ax: Axes, limits: Limits) -> None:
         tidy(ax)
-        start, end, _, _ = limits.box()
+        start, end = limits.stretch()
         ax.set_xlim(_MM * start, _MM * end)
         label(ax, "x [mm]", "pressure [kPa]")
         low, high = (_KPA * value for value in limits.pressure)

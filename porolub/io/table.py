@@ -16,6 +16,7 @@ from porolub.io.words import (
     MEGABYTE,
     MICROMETRE,
     MILLIMETRE,
+    SQUARE_MILLIMETRE,
     Unit,
     digits,
     load_unit,
@@ -101,12 +102,14 @@ def _contact(summary: Summary) -> Iterator[Row]:
     if approach is not None:
         remark = "the plane is pressed in" if approach > 0 else "the plane stands off"
         yield "approach", MICROMETRE.text(approach), remark if approach else ""
+    yield from _simple(summary, SQUARE_MILLIMETRE, {"contact_area": "contact area"})
     length = number(summary, "contact_length")
     if length is not None:
         left, right = number(summary, "contact_left"), number(summary, "contact_right")
         known = length > 0 and left is not None and right is not None
         ends = f"from {MILLIMETRE.digits(left)} to {MILLIMETRE.text(right)}" if known else ""
         yield "contact length", MILLIMETRE.text(length), ends if length else "no contact"
+    yield from _simple(summary, MILLIMETRE, {"contact_width": "contact width"}, "along z")
     yield from _simple(
         summary, MILLIMETRE, {"penetration_length": "penetration length"}, "from the geometry alone"
     )

@@ -74,6 +74,7 @@ def short_time(value: float) -> str:
 
 ONE = Unit("", 1.0)
 MILLIMETRE = Unit("mm", 1e-3)
+SQUARE_MILLIMETRE = Unit("mm^2", 1e-6)
 MICROMETRE = Unit("um", 1e-6)
 KILOPASCAL = Unit("kPa", 1e3)
 MEGABYTE = Unit("MB", 1e6)

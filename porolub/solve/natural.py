@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from mpi4py import MPI
 from numpy.typing import NDArray
 
 Rows = NDArray[Any]
@@ -76,6 +75,8 @@ def _alltoall(comm: Any, counts: Index) -> Index:
 
 def _exchange(comm: Any, rows: Rows, sent: Index, received: Index) -> Rows:
     """Rows in the order of the ranks they go to, for those that come, in the order of theirs."""
+    from mpi4py import MPI  # who only asks for bounds starts no MPI
+
     rows = np.ascontiguousarray(rows)
     out = np.empty((int(received.sum()), *rows.shape[1:]), rows.dtype)
     width = int(np.prod(rows.shape[1:], dtype=np.int64)) * rows.dtype.itemsize

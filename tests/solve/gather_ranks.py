@@ -1,4 +1,4 @@
-"""Run by mpirun: gather one state and save it from rank 0. Arguments: element, the .npz to write."""
+"""Run by mpirun: gather one state and save it from rank 0. Arguments: element, .npz to write."""
 
 import sys
 from dataclasses import fields as names_of
