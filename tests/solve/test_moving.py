@@ -17,6 +17,7 @@ from porolub.terms.carry import Carry
 from tests.physics.solid_files import barrel, cap, solid_file
 from tests.scene.scenes import ROLLING, changed
 
+RANKS = Path(__file__).with_name("moving_ranks.py")
 R, D = 0.1, 1e-3
 TURN = {"x": [1, 2, 0], "y": [2, 0, 1], "z": [0, 1, 2]}  # of the axes, so that z becomes the key
 
@@ -169,3 +170,15 @@ def test_circles_and_spheres_are_found_from_a_part_of_them(dim):
     flat[:, 1] = 0.0
     assert fit_round(flat, MPI.COMM_SELF) is None
     assert fit_round(X[:dim], MPI.COMM_SELF) is None
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("axis", ["x", "z"])
+def test_all_ranks_find_the_same(run_mpi, tmp_path, axis):
+    path = solid_file(tmp_path / "cap.msh", (6, 1, 6), cap(R, D, 0.05, 5e-3))
+    rows = []
+    for ranks in (1, 3):
+        (line,) = [x for x in run_mpi(ranks, RANKS, path, axis).splitlines() if "FOUND" in x]
+        rows.append([float(word) for word in line.split()[1:]])
+    assert rows[0][1] == pytest.approx(100.0, rel=1e-9)
+    np.testing.assert_allclose(rows[1], rows[0], rtol=1e-9, atol=1e-7)
