@@ -6,13 +6,17 @@ from dataclasses import fields as names_of
 import numpy as np
 from mpi4py import MPI
 
+from porolub.scene import scene_from_dict
 from porolub.solve.gather import gather_fields, gather_state, gather_surface
 from tests.solve.models import case1, model_of, vector, waves
+from tests.terms.case1 import BARREL
 
 
 def main(element: str, path: str) -> None:
     comm = MPI.COMM_WORLD
-    with model_of(case1(14, 5, f"mesh.element={element}"), comm) as model:
+    flat = element != "hex"
+    scene = case1(14, 5, f"mesh.element={element}") if flat else scene_from_dict(BARREL)
+    with model_of(scene, comm) as model:
         x = vector(model, waves(model.dofs))
         fields, surface = gather_fields(model, x), gather_surface(model, x)
         state = gather_state(model, x)
@@ -32,7 +36,8 @@ def main(element: str, path: str) -> None:
     assert len(set(scalar)) == 1
     if comm.rank == 0:
         whole = {name: np.concatenate(parts) for name, parts in blocks.items()}
-        whole |= {f"surface {f.name}": getattr(surface, f.name) for f in names_of(surface)}
+        columns = {f"surface {f.name}": getattr(surface, f.name) for f in names_of(surface)}
+        whole |= {name: a for name, a in columns.items() if isinstance(a, np.ndarray)}
         np.savez(path, **whole, v0=scalar[0])
 
 

@@ -12,7 +12,7 @@ SCRIPT = Path(__file__).with_name("gather_ranks.py")
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("element", ["quad", "triangle"])
+@pytest.mark.parametrize("element", ["quad", "triangle", "hex"])
 def test_no_rank_count_changes_what_is_gathered(run_mpi, tmp_path: Path, element: str) -> None:
     found = {}
     for ranks in (1, 2, 4):
@@ -21,6 +21,7 @@ def test_no_rank_count_changes_what_is_gathered(run_mpi, tmp_path: Path, element
         found[ranks] = dict(np.load(path))
     one = found[1]
     assert {"fields nodes", "fields flux", "surface V", "state u"} <= set(one)
+    assert ("surface cells" in one) == (element == "hex")
     for ranks in (2, 4):
         assert set(found[ranks]) == set(one)
         for name, values in one.items():
