@@ -1,7 +1,4 @@
-"""Matrix values without copies: MatSetValuesCOO and MatSeqAIJGetArray through ctypes.
-
-petsc4py 3.18 wraps neither.
-"""
+"""Matrix values without copies, through ctypes: petsc4py 3.18 does not wrap these functions."""
 
 from __future__ import annotations
 
@@ -28,8 +25,7 @@ def petsc_library() -> ctypes.CDLL:
         raise SolveError("PETSc's shared library is not loaded: is petsc4py installed?")
     lib = ctypes.CDLL(sorted(paths)[0])
     pointer = ctypes.c_void_p
-    lib.MatSetPreallocationCOO.argtypes = [pointer, ctypes.c_ssize_t, pointer, pointer]
-    lib.MatSetValuesCOO.argtypes = [pointer, pointer, ctypes.c_int]
+    lib.MatMPIAIJGetSeqAIJ.argtypes = [pointer] * 4
     lib.MatSeqAIJGetArray.argtypes = [pointer, pointer]
     lib.MatSeqAIJRestoreArray.argtypes = [pointer, pointer]
     return lib
@@ -40,27 +36,29 @@ def _check(error: int) -> None:
         raise PETSc.Error(error)
 
 
-def preallocate(mat: PETSc.Mat, rows: NDArray[np.int32], cols: NDArray[np.int32]) -> None:
-    """Fix the pattern; entries with a negative row or column are ignored from then on."""
-    rows = np.ascontiguousarray(rows, dtype=PETSc.IntType)
-    cols = np.ascontiguousarray(cols, dtype=PETSc.IntType)
-    _check(petsc_library().MatSetPreallocationCOO(mat.handle, len(rows), rows.ctypes.data,
-                                                  cols.ctypes.data))
-
-
-def insert(mat: PETSc.Mat, values: Array) -> None:
-    """Set all values, in the order of the pattern; repeated entries are summed."""
-    values = np.ascontiguousarray(values, dtype=np.float64)
-    _check(petsc_library().MatSetValuesCOO(mat.handle, values.ctypes.data,
-                                           int(PETSc.InsertMode.INSERT)))
-
-
 @contextmanager
 def values_of(mat: PETSc.Mat, count: int) -> Iterator[Array]:
     """The stored values (count,) of a sequential AIJ matrix, row by row, to be written."""
+    with _values(mat.handle, count) as values:
+        yield values
+
+
+@contextmanager
+def values_of_rank(mat: PETSc.Mat, own: int, others: int) -> Iterator[tuple[Array, Array]]:
+    """The stored values of this rank's rows of a parallel AIJ matrix, row by row, to be written:
+    (own,) in columns of its own and (others,) in columns of other ranks."""
+    parts = ctypes.c_void_p(), ctypes.c_void_p()
+    _check(petsc_library().MatMPIAIJGetSeqAIJ(mat.handle, *map(ctypes.byref, parts), None))
+    with _values(parts[0].value, own) as first, _values(parts[1].value, others) as second:
+        yield first, second
+    mat.stateIncrease()
+
+
+@contextmanager
+def _values(handle: int | None, count: int) -> Iterator[Array]:
     pointer = ctypes.POINTER(ctypes.c_double)()
-    _check(petsc_library().MatSeqAIJGetArray(mat.handle, ctypes.byref(pointer)))
+    _check(petsc_library().MatSeqAIJGetArray(handle, ctypes.byref(pointer)))
     try:
-        yield np.ctypeslib.as_array(pointer, (count,))
+        yield np.ctypeslib.as_array(pointer, (count,)) if count else np.empty(0)
     finally:
-        _check(petsc_library().MatSeqAIJRestoreArray(mat.handle, ctypes.byref(pointer)))
+        _check(petsc_library().MatSeqAIJRestoreArray(handle, ctypes.byref(pointer)))

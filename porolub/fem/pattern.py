@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from scipy.sparse import csr_array
 from porolub.errors import SolveError
 from porolub.fem import coo, kernels
 from porolub.fem.dofs import Dofs
+from porolub.fem.shared import SharedRows
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
@@ -67,7 +69,7 @@ class Pattern:
     """Union of entity blocks as CSR (indptr, indices) over local dofs, columns sorted.
 
     Serially it is the matrix itself and values are summed in place; in parallel the rank's
-    sums are handed to PETSc entry by entry (COO), which adds what belongs to other ranks.
+    sums go to their rows, here and on other ranks (see porolub.fem.shared).
     """
 
     def __init__(self, dofs: Dofs, blocks: list[tuple[Ints, Ints, int]],
@@ -111,13 +113,11 @@ class Pattern:
         if self._serial:  # the matrix uses the pattern's own arrays
             csr = self.indptr, self.indices, np.zeros(len(self.indices))
             return PETSc.Mat().createAIJWithArrays(sizes, csr, comm=d.mesh.comm)
-        mat = PETSc.Mat().create(comm=d.mesh.comm)
-        mat.setSizes(sizes)
-        mat.setType("aij")
-        mat.setUp()
-        rows = np.repeat(d.global_numbers, np.diff(self.indptr))
-        coo.preallocate(mat, rows, d.global_numbers[self.indices])
-        return mat
+        return self._shared.create()
+
+    @cached_property
+    def _shared(self) -> SharedRows:
+        return SharedRows(self._dofs, self.indptr, self.indices)
 
     @contextmanager
     def values(self, mat: PETSc.Mat) -> Iterator[Array]:
@@ -128,7 +128,7 @@ class Pattern:
                 yield values
                 self._fix(values)
         else:
-            values = np.zeros(len(self.indices))
-            yield values
+            values = np.zeros(len(self.indices) + 1)
+            yield values[:-1]
             self._fix(values)
-            coo.insert(mat, values)
+            self._shared.insert(mat, values)
