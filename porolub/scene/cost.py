@@ -6,8 +6,8 @@ core of the machine it was written on (3 GHz, AVX-512, one BLAS thread): Case 1 
 300 x 30 and 600 x 30 elements and in triangles, joint3d.toml with 30 x 3 x 6 to 80 x 4 x 20
 elements, and cubes of up to 14^3 elements, 10,000 to 200,000 unknowns. There the entries of the
 matrix came out within 12 %, the factors within 11 %, memory within 14 % and time within 30 %.
-Other machines and orderings, and more ranks than one, for which it is extrapolated, make it a
-factor of 2.
+On 2 to 8 ranks the fullest came within 40 %. Other machines and orderings, and many ranks, for
+which it is extrapolated, make it a factor of 2.
 """
 
 from dataclasses import dataclass
@@ -40,6 +40,9 @@ SPLIT_SECONDS = 120e-9
 SPLIT_SECONDS_AN_ITERATION = 8e-9
 SPLIT_ITERATIONS = 40
 SPLIT_SPREAD = 1.15
+
+DIRECT_UP_TO = {2: 1_000_000, 3: 40_000}
+"""Unknowns up to which solver.preset = "auto" factorises, by dimension."""
 
 
 @dataclass(frozen=True)
@@ -122,3 +125,10 @@ def _as_bricks(parts: Parts) -> float:
     share = {"quad": 1.0, "triangle": 1 / 2, "hexahedron": 1.0, "tetra": 1 / 6}
     kinds = ("quad", "triangle") if parts.dimension == 2 else ("hexahedron", "tetra")
     return sum(parts.numbers.get(kind, 0) * share[kind] for kind in kinds)
+
+
+def preset_used(asked: str, dimension: int, unknowns: int) -> str:
+    """Return the solver preset that ``asked`` stands for in a scene of this size."""
+    if asked != "auto":
+        return asked
+    return "direct" if unknowns <= DIRECT_UP_TO[dimension] else "fieldsplit"
