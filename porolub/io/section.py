@@ -53,9 +53,13 @@ class Chart:
     def cut(self, values: dict[str, Array], *, s: float | None = None,
             aside: float | None = None) -> tuple[Array, dict[str, Array]]:  # fmt: skip
         """Values along the line of one aside (or one s): positions (k,) on it, and each (k,)."""
-        along = self.s if s is None else self.aside
-        line = np.linspace(along.min(), along.max(), _LINE)
-        where = [line, np.full(_LINE, aside)] if s is None else [np.full(_LINE, s), line]
+        along, fixed, at = self.s, self.aside, aside or 0.0
+        if s is not None:
+            along, fixed, at = self.aside, self.s, s
+        on_it = np.abs(fixed - at) < 1e-9 * np.ptp(fixed)
+        line = np.unique([*np.linspace(along.min(), along.max(), _LINE), *along[on_it]])
+        same = np.full(len(line), at)
+        where = (line, same) if s is None else (same, line)
         found = {n: LinearTriInterpolator(self.triangles, v)(*where) for n, v in values.items()}
         inside = ~np.ma.getmaskarray(next(iter(found.values())))
         return line[inside], {n: np.asarray(v[inside]) for n, v in found.items()}

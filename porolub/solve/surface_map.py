@@ -1,8 +1,9 @@
 """The lubricated surface of a three-dimensional scene as a map: nodes, facets and what acts there.
 
-Film flux: the flux the film's own equation transports (stabilisation included), projected from
-the quadrature points onto the functions of the surface's vertices with a lumped mass, so that its
-integral over the surface is kept; linear in between.
+Film flux: of what the film's own equation transports (stabilisation included) the mean over each
+facet, which along a row of facets is the flux that is conserved, as in the profile of a plane
+scene; the pointwise flux of a linear pressure in a film whose h^3 varies is not.  Nodes take the
+mean of the facets around them, such that the integral over the surface is kept.
 """
 
 from __future__ import annotations
@@ -17,8 +18,8 @@ from porolub.solve.report import SurfaceMap
 from porolub.solve.surface_nodes import (
     columns_at_nodes,
     corners_of_facets,
-    on_surface_nodes,
     to_root,
+    weightless_corners,
 )
 
 Array = NDArray[np.float64]
@@ -32,7 +33,7 @@ def surface_map(d: Derived) -> SurfaceMap | None:
     c = columns_at_nodes(d)
     flux = np.zeros((len(mesh.coordinates), 5))
     if d.film is not None:
-        flux = on_surface_nodes(d, _film_flux(d)) * s.speed * s.length
+        flux = _film_flux(d) * s.speed * s.length
     columns = np.hstack([mesh.coordinates * s.length, flux,
                          np.column_stack([c[name] for name in SCALARS])])
     found = to_root(mesh, d.mine, columns)
@@ -50,7 +51,7 @@ def surface_map(d: Derived) -> SurfaceMap | None:
 
 
 def _film_flux(d: Derived) -> Array:
-    """(nnode, 5) film flux at the surface's vertices: x, y, z, along s and along z (scaled)."""
+    """(nnode, 5) film flux at the surface's nodes: x, y, z, along s and along z (scaled)."""
     assert d.film is not None
     mesh, at = d.model.mesh, d.surface
     found = Integrand(jacobian=False)
@@ -59,16 +60,29 @@ def _film_flux(d: Derived) -> Array:
     along, aside = directions(at)
     five = np.concatenate([Q, (Q * along).sum(-1, keepdims=True),
                            (Q * aside).sum(-1, keepdims=True)], axis=-1)
-    values = at.domain.tables(1).value[at.domain.variant]
-    shares = np.einsum("eq,eqi,eqk->eik", at.weights, values,
-                       np.concatenate([five, np.ones((*at.weights.shape, 1))], axis=-1))
+    area = at.weights.sum(axis=1)
+    means = np.einsum("eq,eqk->ek", at.weights, five) / area[:, None]
+    shares = _shares_of_nodes(d, area)[..., None]
     sums = np.zeros((len(mesh.coordinates), 6))
-    np.add.at(sums, mesh.vertices_of_cells[at.domain.cells].ravel(), shares.reshape(-1, 6))
+    np.add.at(sums, mesh.facets(d.model.lubricated).nodes,
+              shares * np.column_stack([means, np.ones(len(means))])[:, None, :])
     total = sum_at_nodes(mesh, sums)
-    out = np.zeros((len(total), 5))
-    seen = total[:, 5] > 1e-12 * total[:, 5].max(initial=0.0)  # of cells' other vertices: rounding
-    out[seen] = total[seen, :5] / total[seen, 5:]
-    return out
+    return np.divide(total[:, :5], total[:, 5:], out=np.zeros((len(total), 5)),
+                     where=total[:, 5:] > 0)
+
+
+def _shares_of_nodes(d: Derived, area: Array) -> Array:
+    """(nf, nn) integral of each facet's basis functions; of quadratic triangles, whose corners
+    would get nothing, the same for all."""
+    mesh, domain = d.model.mesh, d.surface.domain
+    facets = mesh.facets(d.model.lubricated)
+    if weightless_corners(d):
+        return np.broadcast_to(area[:, None], facets.nodes.shape)
+    values = domain.tables(mesh.degree).value[domain.variant]
+    shares = np.einsum("eq,eqi->ei", domain.weights, values)
+    own = mesh.cell.face_nodes(mesh.degree)[facets.local_face]
+    taken: Array = np.take_along_axis(shares, own, axis=1)
+    return taken
 
 
 def directions(at: Points) -> tuple[Array, Array]:

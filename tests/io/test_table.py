@@ -26,6 +26,17 @@ def printed(width: int, *, function: Any, arguments: tuple[Any, ...]) -> str:
     return stream.getvalue()
 
 
+def test_a_body_has_an_area_and_a_width_of_contact(summary: dict[str, Any], scene: Scene) -> None:
+    rows = cells(results_table(summary, scene))
+    assert not {"contact area", "contact width"} & set(rows)
+    rows = cells(results_table(
+        summary | {"contact_area": 4.125e-5, "contact_width": 6.4e-3}, scene))
+    assert rows["contact area"] == ["41.25 mm^2", ""]
+    assert rows["contact width"] == ["6.400 mm", "along z"]
+    three = [name for name in rows if name.startswith("contact ")]
+    assert three == ["contact area", "contact length", "contact width"]
+
+
 def test_numbers_are_converted(summary: dict[str, Any], scene: Scene) -> None:
     rows = cells(results_table(summary, scene))
     expected = {

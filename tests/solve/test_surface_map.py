@@ -81,7 +81,8 @@ def test_the_integral_of_the_flux_is_kept() -> None:
         d = Derived(model, vector(model, local))
         at, film = d.surface, d.film
         assert film is not None
-        weights = d.pressure_weights()[d.mine]
+        assert model.surface is not None
+        weights = model.surface.weights[d.mine]
         surface = map_of(model, local)
         numbers = np.sort(model.mesh.natural_node[d.mine])
         on = np.searchsorted(numbers, model.mesh.natural_node[d.mine])
