@@ -1,5 +1,6 @@
 """A user's mesh of a slab in 3D gives the answer of the built-in one: film, contact, rotation."""
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ SLAB = {"shape": "barrel", "outer_radius": "100 mm", "thickness": "1 mm", "half_
         "width": "1 mm"}
 LOADS = ("load_fluid", "load_solid", "approach", "contact_length", "friction_coefficient")
 FLOWS = ("inflow_left", "inflow_right", "outflow_right")
+
+RUN = "from porolub.cli import main; main()"
 
 
 def rolled(directory: Path, geometry: dict[str, Any], mesh: dict[str, int]) -> Output:
@@ -52,3 +55,24 @@ def test_tetrahedra_of_that_size_agree_within_their_error(
     assert found["mass_balance_error"] < 1e-8
     for key in LOADS:
         assert found[key] == pytest.approx(built_in.summary[key], rel=0.03), key
+
+
+@pytest.mark.mpi
+def test_tetrahedra_give_the_same_numbers_on_any_number_of_ranks(run_mpi, tmp_path: Path) -> None:
+    barrel_file(tmp_path / "mesh.msh", hexahedra=False, counts=(30, 2, 2), width=2e-3)
+    tables = changed(ROLLING, scene={"dimension": 3}, load={"force": "3 N"}, mesh=None)
+    tables["geometry"] = {"shape": "file", "path": "mesh.msh", **SYMMETRY}
+    lines = []
+    for section, keys in tables.items():
+        lines += [f"[{section}]", *(f"{key} = {json.dumps(value)}" for key, value in keys.items())]
+    scene = tmp_path / "scene.toml"
+    scene.write_text("\n".join(lines))
+    found = {}
+    for ranks in (1, 2, 4):
+        out = tmp_path / str(ranks)
+        run_mpi(ranks, RUN, "run", scene, "--quiet", "--out", out)
+        found[ranks] = json.loads((out / "summary.json").read_text())
+    assert found[1]["contact_area"] > 0
+    for key in (*LOADS, *FLOWS, "contact_area", "contact_pressure_max", "pressure_max"):
+        for ranks in (2, 4):
+            assert found[ranks][key] == pytest.approx(found[1][key], rel=1e-8), (key, ranks)
