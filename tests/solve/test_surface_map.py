@@ -1,18 +1,22 @@
 """The surface of a body: what acts on it in states simple enough to be worked out by hand."""
 
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 from scipy.integrate import dblquad
 
 from porolub.fem.points import GRAD, Integrand
+from porolub.mesh import build_mesh
 from porolub.scene import scene_from_dict
 from porolub.solve.derived import Derived, scalars
 from porolub.solve.gather import gather_surface
-from porolub.solve.model import Model
+from porolub.solve.model import Model, build_model, scales_of
 from porolub.solve.report import SurfaceMap
 from porolub.solve.surface_map import directions
+from tests.mesh.scenes import box_file
 from tests.scene.scenes import changed
 from tests.solve.models import Array, model_of, vector
 from tests.terms.case1 import BARREL, CUBOID
@@ -177,3 +181,35 @@ def test_directions_lie_in_the_surface() -> None:
     np.testing.assert_allclose(along[..., 2], 0.0, atol=1e-12)
     assert along[..., 0].min() > 0.9
     assert aside[..., 2].min() > 0.9
+
+
+SIDES = {"top": "lubricated", "bottom": "bone", "left": "inlet", "right": "outlet"}
+
+
+def test_tetrahedra_have_maps_too(tmp_path: Path) -> None:
+    """Contact acts in the middles of their sides: the corners have the mean around them."""
+    path = box_file(tmp_path / "box.msh", order=2, hexahedra=False, names=SIDES)
+    geometry = {"shape": "file", "path": str(path), "plane_normal": [0, 1, 0], "symmetry": []}
+    tables = changed(CUBOID, mesh=None)
+    wanted = scene_from_dict({**tables, "geometry": geometry})
+    h, by_x, by_z = 4e-6, 2e7, -3e7
+    mesh = build_mesh(wanted, MPI.COMM_SELF, length_scale=D)
+    model = build_model(wanted, mesh, scales_of(wanted, D))
+    assert model.surface is not None
+    X = places(model, "p")
+    local = fill(model, v0=-h, p=1e5 + by_x * X[:, 0] + by_z * X[:, 2], l=3e4)
+    surface, found = map_of(model, local), scalars(model, vector(model, local))
+    pressed = fill(model, v0=1e-5, l=3e4)
+    touching = map_of(model, pressed)
+    model.destroy()
+    assert (surface.cell_type, surface.degree) == ("triangle", 2)
+    assert surface.cells.shape[1] == 6
+    corners = surface.nodes[surface.cells[:, :3]]
+    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]),
+                           axis=1) / 2  # fmt: skip
+    area = found["load_solid"] / 3e4
+    assert areas.sum() == pytest.approx(area, rel=1e-9)
+    np.testing.assert_allclose(surface.p, 1e5 + by_x * surface.x + by_z * surface.z, rtol=1e-9)
+    np.testing.assert_allclose(surface.Q_s, -(h**3) / 12 / ETA * by_x + h / 2 * SPEED, rtol=1e-8)
+    np.testing.assert_allclose(surface.Q_z, -(h**3) / 12 / ETA * by_z, rtol=1e-8)
+    np.testing.assert_allclose(touching.p_c, 3e4, rtol=1e-12)
