@@ -1,5 +1,8 @@
 """Numbers and owners of a tensor grid's nodes, and how evenly its columns are shared out."""
 
+import tracemalloc
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,6 +10,8 @@ from hypothesis import strategies as st
 
 from porolub.mesh import lattice
 from porolub.mesh.columns import Columns, rank_grid
+from porolub.mesh.shape import Block
+from porolub.mesh.structured import structured
 
 COUNTS = st.integers(2, 3).flatmap(
     lambda dim: st.tuples(*[st.integers(1, 7 if dim == 2 else 5)] * dim)
@@ -82,3 +87,32 @@ def test_ranks_have_equal_shares_of_cells_and_of_the_surface(counts, most, ranks
 )
 def test_parts_are_even_and_near_square_on_the_surface(along, deep, ranks, expected):
     assert rank_grid(along, deep, ranks) == expected
+
+
+def test_a_part_of_a_mesh_of_half_a_billion_nodes_costs_what_the_part_costs():
+    """Rank 12345 of 100000 makes its own columns; its neighbour agrees on what they share."""
+    counts, ranks, rank = (2000, 16, 2000), 100_000, 12_345
+    ticks = [np.linspace(0.0, 1.0, n + 1) for n in counts]
+    columns = Columns(counts, ranks)
+    assert np.prod(2 * np.array(counts, dtype=float) + 1) > 5e8
+    below = columns.owners(2 * columns.box(rank)[0][None])[0]
+    assert below != rank
+
+    def part(number):
+        of = SimpleNamespace(rank=number, size=ranks)
+        return structured(Block(20.0, 1.0, 20.0), ticks, of, 2)
+
+    tracemalloc.start()
+    mine = part(rank)
+    peak = tracemalloc.get_traced_memory()[1]
+    tracemalloc.stop()
+    assert len(mine.cells) == 16 * 8 * 5
+    assert peak < 64e6
+    other = part(below)
+    shared, here, there = np.intersect1d(
+        mine.natural_node, other.natural_node, return_indices=True
+    )
+    assert len(shared) > 0
+    np.testing.assert_array_equal(mine.global_node[here], other.global_node[there])
+    np.testing.assert_array_equal(mine.coordinates[here], other.coordinates[there])
+    assert not (mine.owned[here] & other.owned[there]).any()
