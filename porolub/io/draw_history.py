@@ -129,6 +129,7 @@ def _lengths(course: Course, title: str) -> Figure:
     unit = Unit("mm", 1e-3)
     for key, name, colour, style in (
         ("contact_length", "contact length b", VERMILLION, "-"),
+        ("contact_width", "contact width, along z", BLUE, "-."),
         ("penetration_length", "penetration length $b_0$", GREEN, "--"),
     ):
         if course.has(key):

@@ -95,7 +95,7 @@ def _figure(chart: Chart, title: str, count: int) -> tuple[Figure, list[Axes]]:
     to_scale = 1 / _UNEQUAL < ratio < _UNEQUAL
     height = 7.0
     if beside and to_scale:
-        height = float(np.clip((12 / count - 0.45) * ratio + 1.55, 5.0, 9.0))
+        height = float(np.clip((12 / count - 0.45) * ratio + 1.55, 3.5, 9.0))
     figure = Figure(figsize=(12, height), dpi=100, layout="constrained")
     FigureCanvasAgg(figure)
     shape = (1, count) if beside else (count, 1)

@@ -12,7 +12,9 @@ from porolub.solve.report import Array, SurfaceData, SurfaceMap
 
 _HAPPENS = 0.02  # of the largest pressure: below it nothing happens
 _MARGIN = 0.3  # of what is shown, around where things happen
-_LINE = 401  # points of a cut
+_LINE = 401  # points of a cut where there is no row of nodes
+_MOST = 400_000  # triangles; more take matplotlib minutes
+_NODES = 5  # a row has at least
 
 
 @dataclass(frozen=True)
@@ -28,9 +30,12 @@ class Chart:
     @classmethod
     def of(cls, surface: SurfaceMap) -> "Chart":
         """The chart of a surface."""
+        degree = surface.degree
+        if len(surface.cells) * len(TRIANGLES[surface.cell_type, degree]) > _MOST:
+            degree = 1  # vertices are fine enough
         name = "z" if np.ptp(surface.z) >= 1e-6 * np.ptp(surface.y) else "y"
         aside = getattr(surface, name)
-        cut = np.array(TRIANGLES[surface.cell_type, surface.degree])
+        cut = np.array(TRIANGLES[surface.cell_type, degree])
         cells = surface.cells[:, cut].reshape(-1, 3)
         return cls(surface, surface.s, aside, name, Triangulation(surface.s, aside, cells))
 
@@ -52,12 +57,17 @@ class Chart:
 
     def cut(self, values: dict[str, Array], *, s: float | None = None,
             aside: float | None = None) -> tuple[Array, dict[str, Array]]:  # fmt: skip
-        """Values along the line of one aside (or one s): positions (k,) on it, and each (k,)."""
+        """Values along the line of one aside (or one s): positions (k,) on it, and each (k,).
+
+        At the nodes, where there is a row of them on the line.
+        """
         along, fixed, at = self.s, self.aside, aside or 0.0
         if s is not None:
             along, fixed, at = self.aside, self.s, s
         on_it = np.abs(fixed - at) < 1e-9 * np.ptp(fixed)
-        line = np.unique([*np.linspace(along.min(), along.max(), _LINE), *along[on_it]])
+        line = np.unique(along[on_it])
+        if len(line) < _NODES or np.ptp(line) < 0.9 * np.ptp(along):
+            line = np.linspace(along.min(), along.max(), _LINE)
         same = np.full(len(line), at)
         where = (line, same) if s is None else (same, line)
         found = {n: LinearTriInterpolator(self.triangles, v)(*where) for n, v in values.items()}

@@ -118,14 +118,20 @@ def test_cuts_are_through_the_middle_and_the_highest_pressure(surface: SurfaceMa
     assert across.get_xlabel() == "position across, z [mm]"
 
 
-def test_a_profile_is_linear_between_nodes(surface: SurfaceMap) -> None:
-    profile = Chart.of(surface).profile(aside=0.0)
+@pytest.mark.parametrize("along_nodes", [True, False])
+def test_a_profile_is_that_of_the_nodes(surface: SurfaceMap, along_nodes: bool) -> None:
+    chart = Chart.of(surface)
+    profile = chart.profile(aside=0.0 if along_nodes else 1e-7)
+    assert (len(profile.s) == 33) == along_nodes
     on = surface.z == 0
     order = np.argsort(surface.s[on])
     for name in ("p", "p_c", "V", "x"):
         expected = np.interp(profile.s, surface.s[on][order], getattr(surface, name)[on][order])
-        np.testing.assert_allclose(getattr(profile, name), expected, atol=1e-9 * expected.max())
+        np.testing.assert_allclose(getattr(profile, name), expected, atol=1e-3 * expected.max())
     np.testing.assert_array_equal(profile.h[profile.p_c > 0], 0.0)
+    if along_nodes:
+        touching = profile.s[profile.p_c > 0]
+        assert touching.max() == surface.s[on & (surface.p_c > 0)].max()
 
 
 @pytest.mark.parametrize(
@@ -149,3 +155,14 @@ def test_where_a_surface_is_cut(surface: SurfaceMap, low: float, high: float,
 def test_a_surface_that_looks_along_z_is_drawn_over_y(surface: SurfaceMap) -> None:
     turned = replace(surface, nodes=surface.nodes[:, [0, 2, 1]] * [1, 1, 0])
     assert Chart.of(turned).name == "y"
+
+
+def test_a_large_surface_is_drawn_by_its_vertices(
+    surface: SurfaceMap, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert len(Chart.of(surface).triangles.triangles) == 8 * len(surface.cells)
+    monkeypatch.setattr("porolub.io.section._MOST", 1000)
+    chart = Chart.of(surface)
+    assert len(chart.triangles.triangles) == 2 * len(surface.cells)
+    assert set(draw_maps(surface, "test", None)) == {
+        "surface.png", "flow.png", "profile_s.png", "profile_z.png"}  # fmt: skip
