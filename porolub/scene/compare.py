@@ -6,6 +6,7 @@ from typing import Any
 MAY_CHANGE = frozenset(
     {
         "scene.title",
+        "solver.preset",
         "time.end",
         "time.until",
         "time.repeat_tolerance",
@@ -15,7 +16,7 @@ MAY_CHANGE = frozenset(
         "time.first_step",
     }
 )
-"""Keys a restarted run may have changed: they say how far and how finely to go on."""
+"""Keys a restarted run may have changed: how far, how finely and by what solver to go on."""
 
 
 def differences(before: dict[str, Any], now: dict[str, Any]) -> list[str]:

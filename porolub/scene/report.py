@@ -6,6 +6,8 @@ from rich.console import Group, RenderableType
 from rich.table import Table
 from rich.text import Text
 
+from porolub.scene.cost import expected_cost, preset_used
+from porolub.scene.cost_table import cost_table
 from porolub.scene.derived import derived
 from porolub.scene.describe import describe, readable
 from porolub.scene.effects import effects
@@ -45,6 +47,7 @@ _READINGS = {
 def report(scene: Scene) -> RenderableType:
     """Return the report on a checked scene, to be printed with rich."""
     cost = estimate_unknowns(scene)
+    preset = preset_used(scene.solver.preset, scene.dimension, cost["total"])
     parts: list[RenderableType] = [
         Text(scene.title, style="bold"),
         Text(_summary(scene)),
@@ -52,6 +55,8 @@ def report(scene: Scene) -> RenderableType:
         _effects_table(scene, cost),
         "",
         _unknowns_table(scene, cost),
+        "",
+        cost_table(expected_cost(scene), preset),
         "",
     ]
     if scene.boundary:
@@ -205,8 +210,18 @@ def _conventions_table(scene: Scene) -> Table:
     return table
 
 
+def _part_modelled(scene: Scene) -> list[str]:
+    """Say which part of the thing is modelled, and what that makes of its loads."""
+    planes, half = scene.geometry.symmetry, getattr(scene.geometry, "half", None)
+    if not planes:
+        return []
+    part = "half of the width" if half else "the part between them" if len(planes) > 1 else "half"
+    are = "is a symmetry plane" if len(planes) == 1 else "are symmetry planes"
+    return [f"{' and '.join(planes)} {are}: loads, flows and contact are those of {part}."]
+
+
 def _notes(scene: Scene) -> list[str]:
-    d, notes = derived(scene), []
+    d, notes = derived(scene), _part_modelled(scene)
     if scene.varies and scene.time is None:
         notes.append("Without [time] all that changes with time is taken at t = 0.")
     if scene.varies and scene.time is not None:

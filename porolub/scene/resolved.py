@@ -46,10 +46,11 @@ def write_resolved(scene: "Scene", path: str | Path) -> None:
 def digest(scene: "Scene") -> str:
     """Return a SHA-256 of all that changes the answer: a mesh file or table by its content.
 
-    Left out are the title and what only decides how long a run is followed and what is kept of it.
+    Left out are the title, the solver and what only decides how long a run is followed and what
+    is kept of it.
     """
     tables = resolved(scene)
-    del tables["scene"]["title"]
+    del tables["scene"]["title"], tables["solver"]
     for key in LENGTH_OF_RUN:
         tables.get("time", {}).pop(key, None)
     if isinstance(scene.geometry, MeshFile):

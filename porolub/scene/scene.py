@@ -15,6 +15,7 @@ from porolub.scene.operation import Contact, Load, Motion
 from porolub.scene.resolved import digest, resolved
 from porolub.scene.rules import violations
 from porolub.scene.schedule import common_period, histories, kinks, varying
+from porolub.scene.solver import Solver
 from porolub.scene.transient import Time
 
 
@@ -43,6 +44,7 @@ class Scene(Section):
     load: Load | None = None
     time: Time | None = None
     conventions: Conventions = Conventions()
+    solver: Solver = Solver()
     boundary: dict[str, Boundary] = Field(default_factory=dict)
 
     @property
