@@ -14,13 +14,13 @@ from mpi4py import MPI
 
 import porolub.run_transient
 from porolub.cli import main
-from porolub.io import history
+from porolub.io import hdf5, history
 from porolub.solve.newton import Newton
 
 MINE = MPI.COMM_WORLD.rank == MPI.COMM_WORLD.size - 1
 where, count = sys.argv.pop(1), int(sys.argv.pop(1))
-jacobian, append, write_bytes, replace = (
-    Newton.jacobian, history._append, Path.write_bytes, os.replace)
+jacobian, append, write_rows, replace = (
+    Newton.jacobian, history._append, hdf5._write_rows, os.replace)
 
 
 def has_come(place: str) -> bool:
@@ -47,11 +47,11 @@ def in_a_row(path: Path, line: bytes) -> None:
     append(path, line)
 
 
-def while_written(path: Path, data: Any) -> int:
+def while_written(path: Path, new: hdf5.NewFile, places: dict[str, int]) -> None:
     if "checkpoint.h5" in path.name and has_come("half written"):
-        write_bytes(path, data[: len(data) // 2])
+        write_rows(path, new, dict(list(places.items())[: len(places) // 2]))
         die()
-    return write_bytes(path, data)
+    write_rows(path, new, places)
 
 
 def while_replaced(source: Any, target: Any) -> None:
@@ -66,7 +66,7 @@ def while_replaced(source: Any, target: Any) -> None:
 if __name__ == "__main__":
     Newton.jacobian = in_a_step  # type: ignore[method-assign]
     history._append = in_a_row
-    Path.write_bytes = while_written  # type: ignore[method-assign,assignment]
+    hdf5._write_rows = while_written
     os.replace = while_replaced
     porolub.run_transient.SPARINGLY = 0.0  # a checkpoint after every step
     main()
