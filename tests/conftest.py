@@ -93,13 +93,8 @@ def run_mpi(tmp_path: Path) -> RunMPI:
 
 @pytest.fixture(autouse=True)
 def _options_of_one_test_are_not_those_of_the_next() -> Iterator[None]:
-    """PETSc has one table of options a process; a test that sets some leaves it as it was."""
-    from petsc4py import PETSc
-
-    options = PETSc.Options()
-    before = options.getAll()
+    """PETSc has one table of options a process; a test leaves it empty."""
     yield
-    for name in options.getAll():
-        options.delValue(name)
-    for name, value in before.items():
-        options.setValue(name, value)
+    from porolub.solve.options import forget_options
+
+    forget_options()

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 from petsc4py import PETSc
 
+from porolub.solve.linear import Linear
 from porolub.solve.place import Place, place_of_largest
 from porolub.solve.report import NewtonRecord
 from porolub.solve.system import System
@@ -68,13 +69,14 @@ class Newton:
     ``observe`` is called with a NewtonRecord after each iteration; ``stop`` is asked before each
     whether to give up, and says why (the same on all ranks of the
     communicator it is given).  ``integrator``: a TS whose SNES is
-    to iterate like this; it asks for the residual and Jacobian itself.
+    to iterate like this; it asks for the residual and Jacobian itself.  ``linear``: the solver of
+    its linear systems, destroyed with it; by default what PETSc's options say.
     """
 
     def __init__(self, system: System, clock: Clock,
                  observe: Callable[[NewtonRecord], None] = lambda record: None,
                  stop: Callable[[Any], str] = lambda comm: "",
-                 integrator: PETSc.TS | None = None) -> None:
+                 integrator: PETSc.TS | None = None, linear: Linear | None = None) -> None:
         self.system, self.clock, self.observe, self.stop = system, clock, observe, stop
         self.dofs = system.dofs
         self.stage, self.fraction = "steady", 1.0
@@ -98,7 +100,7 @@ class Newton:
         start = time.perf_counter()
         self.matrix = system.create_matrix()
         self.residual = self.dofs.vector()
-        self._owned = integrator is None
+        self._owned, self.linear = integrator is None, linear
         if integrator is None:
             self.snes = PETSc.SNES().create(comm=self.dofs.mesh.comm)
             self.snes.setFunction(self.function, self.residual)
@@ -116,6 +118,8 @@ class Newton:
         snes.setTolerances(max_it=1000)
         snes.setFromOptions()
         snes.getKSP().setErrorIfNotConverged(False)
+        if self.linear is not None:
+            self.linear.attach(snes.getKSP())
 
     # -- callbacks ----------------------------------------------------------------------
     def function(self, snes: PETSc.SNES, x: PETSc.Vec, f: PETSc.Vec) -> None:
@@ -134,6 +138,8 @@ class Newton:
             return
         start = time.perf_counter()
         self.system.jacobian(x, P)
+        if self.linear is not None:
+            self.linear.linearise(x)
         self.clock.add("assembly", start)
         self._solve_start = time.perf_counter()
 
@@ -290,5 +296,7 @@ class Newton:
             self._why = f"SNES stopped with reason {reason}"
 
     def destroy(self) -> None:
-        for o in (self.matrix, self.residual, *([self.snes] if self._owned else [])):
+        for o in (*([self.snes] if self._owned else []), self.matrix, self.residual):
             o.destroy()
+        if self.linear is not None:
+            self.linear.destroy()

@@ -1,4 +1,4 @@
-"""PETSc options of the solver: defaults with their reasons, the user's on top, none ignored."""
+"""PETSc options of the solver: a preset's, the user's on top, none ignored."""
 
 from __future__ import annotations
 
@@ -10,15 +10,11 @@ from petsc4py import PETSc
 
 from porolub.errors import SceneError
 from porolub.fem.coo import petsc_library
+from porolub.solve.presets import DIRECT, FIELDSPLIT, NESTED, PRESETS
 
-DIRECT: dict[str, str] = {
+NEWTON: dict[str, str] = {
     "snes_linesearch_type": "basic",  # descent stalls at the kinks of contact; see solve/newton.py
-    "ksp_type": "preonly",  # the factorisation is exact
-    "pc_type": "lu",
-    "pc_factor_mat_solver_type": "mumps",  # parallel, and pivots the zero blocks of contact
-    "mat_mumps_icntl_14": "80",  # % of extra workspace: pivoting needs more than the estimate
 }
-"""MUMPS on the whole matrix: the fastest in 2D up to some 300,000 unknowns."""
 
 STEPS: dict[str, str] = {
     "ts_adapt_type": "basic",  # the next step from the last error alone: exact after a restart
@@ -33,9 +29,14 @@ OF_THE_SCENE: dict[str, str] = {
 }
 """What TS would read but not heed, or not survive, and the key of [time] that says it."""
 
-KNOWN = (*DIRECT, *STEPS, "ts_monitor", "ts_view", "ts_adapt_monitor", "snes_monitor", "snes_view",
-         "snes_converged_reason", "ksp_monitor", "ksp_rtol", "ksp_view", "ksp_converged_reason",
-         "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7", "options_left")
+KNOWN = (*NEWTON, *STEPS, *DIRECT, *FIELDSPLIT, *NESTED, "ts_monitor", "ts_view",
+         "ts_adapt_monitor", "snes_monitor", "snes_view", "snes_converged_reason", "ksp_monitor",
+         "ksp_view", "ksp_converged_reason", "log_view", "mat_mumps_icntl_4", "mat_mumps_icntl_7",
+         "options_left")
+
+MARK = "# the rest by porolub, solver preset "
+
+_ours: dict[str, str] = {}  # what use() has put into PETSc's one database
 
 
 def names_in(text: str) -> list[str]:
@@ -58,17 +59,54 @@ def set_options(text: str) -> list[str]:
         if name in OF_THE_SCENE:
             raise SceneError(f"--petsc -{name}: this is for the scene to say, by "
                              f"time.{OF_THE_SCENE[name]}.")
-    options = PETSc.Options()
-    options.insertString(" ".join(text.split()))
-    for key, value in (DIRECT | STEPS).items():
-        if not options.hasName(key):
-            options.setValue(key, value)
+    for name in names:  # from now on the user's, whatever a preset says
+        _ours.pop(name, None)
+    PETSc.Options().insertString(" ".join(text.split()))
+    use("direct")
     return names
+
+
+def use(preset: str) -> None:
+    """Bring a preset into force in place of the one before; the user's options stay."""
+    options, wanted = PETSc.Options(), NEWTON | STEPS | PRESETS[preset]
+    for key in [k for k in _ours if k not in wanted]:
+        options.delValue(key)
+        del _ours[key]
+    for key, value in wanted.items():
+        if key in _ours or not options.hasName(key):
+            options.setValue(key, value)
+            _ours[key] = value
+
+
+def forget_options() -> None:
+    """Empty PETSc's database: the user's options, too, are those of one run."""
+    options = PETSc.Options()
+    for key in options.getAll():
+        options.delValue(key)
+    _ours.clear()
+
+
+def text_of_options(preset: str) -> str:
+    """All options that a run with a preset has in force, the user's first, as PETSc reads them."""
+    users = {k: v for k, v in PETSc.Options().getAll().items() if k not in _ours}
+    defaults = {k: v for k, v in (NEWTON | STEPS | PRESETS[preset]).items() if k not in users}
+    lines = [f"-{k} {v}" for k, v in sorted(users.items())] + [f"{MARK}{preset}:"]
+    return "\n".join([*lines, *(f"-{k} {v}" for k, v in defaults.items())])
+
+
+def users_options(text: str) -> str:
+    """The user's part of what ``text_of_options`` wrote."""
+    return " ".join(text.split(MARK)[0].split())
+
+
+def option(name: str) -> str:
+    """The value in force of an option; empty where there is none."""
+    return str(PETSc.Options().getString(name, ""))
 
 
 def fixed_steps() -> bool:
     """Whether the user wants steps of one size, as studies of order need them."""
-    return PETSc.Options().getString("ts_adapt_type", "") == "none"
+    return option("ts_adapt_type") == "none"
 
 
 def refuse_unused_together(names: list[str], comm: Any) -> None:

@@ -20,6 +20,7 @@ from porolub.fem.coo import petsc_library
 from porolub.fem.dofs import Field
 from porolub.solve.balance import fluid_balance
 from porolub.solve.drive import drive
+from porolub.solve.linear import Linear
 from porolub.solve.lookback import Entry, Lookback
 from porolub.solve.model import Model
 from porolub.solve.newton import Clock, Newton
@@ -104,7 +105,7 @@ class TimeStepper:
         self._problem: Exception | None = None
         self._replay: tuple[Array, Array] | None = None  # states of its half step and its end
         self.ts = self._create(order)
-        self.newton = Newton(model.system, clock, observe, stop, self.ts)
+        self.newton = Newton(model.system, clock, observe, stop, self.ts, Linear(model))
         soft = "u" in model.dofs.fields
         self.newton.tolerance = NEWTON_TOLERANCE if soft else RIGID_TOLERANCE
         self.newton.max_iterations = MAX_ITERATIONS

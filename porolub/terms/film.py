@@ -91,20 +91,30 @@ class Film:
         gap itself, not of max(0, gap): cut off at a quadrature point it would jump there, and
         Newton would cycle; on closed elements it is zero anyway.
         """
-        assert self.upwind is not None
-        modulus, mobility = self.upwind
         h, dh = film_thickness(self.plane.gap(at))
         U = self.operation.entrainment(at.position, at.normal)
+        s, reach, resists, peclet = self._resolution(at, h, U)
+        extra = reach * upwind_function(peclet)
+        slope = self.plane.slope(at, s)
+        out.residual("p", GRAD, (extra * slope)[..., None] * s)
+        if out.wants_jacobian:
+            by_h = (reach * upwind_derivative(peclet) * -peclet / resists
+                    * self.law.conductance_derivative(h))
+            self.plane.chain(at, out, "p", GRAD, (by_h * dh * slope)[..., None] * s)
+            self.plane.chain_slope(at, out, "p", GRAD, extra[..., None] * s, s)
+
+    def upwinding(self, at: Points, h: Array, U: Array) -> tuple[Array, Array]:
+        """Unit direction (ne, nq, dim) and diffusivity of h (ne, nq) of the streamline term."""
+        s, reach, _, peclet = self._resolution(at, h, U)
+        return s, reach * upwind_function(peclet)
+
+    def _resolution(self, at: Points, h: Array, U: Array) -> tuple[Array, Array, Array, Array]:
+        """Stream, |U| l / 4, what resists the transport of h, and the cells' Peclet number."""
+        assert self.upwind is not None
+        modulus, mobility = self.upwind
         speed = np.linalg.norm(U, axis=-1)
         s = U / np.where(speed > 0, speed, 1.0)[..., None]
         length = at.domain.length_along(s, at.rows)
         resists = self.law.conductance(h) + mobility * length + 1e-30  # its square divides below
         peclet = speed * length**2 / (2.0 * modulus * resists)
-        extra = speed * length / 4.0 * upwind_function(peclet)
-        slope = self.plane.slope(at, s)
-        out.residual("p", GRAD, (extra * slope)[..., None] * s)
-        if out.wants_jacobian:
-            by_h = (speed * length / 4.0 * upwind_derivative(peclet) * -peclet / resists
-                    * self.law.conductance_derivative(h))
-            self.plane.chain(at, out, "p", GRAD, (by_h * dh * slope)[..., None] * s)
-            self.plane.chain_slope(at, out, "p", GRAD, extra[..., None] * s, s)
+        return s, speed * length / 4.0, resists, peclet

@@ -51,10 +51,14 @@ class Streamline:
             out.jacobian("j", VALUE, "u", GRAD, -d.cof)
 
     def diffusion(self, at: Points, out: Integrand) -> None:
-        K = at.kept(self.name, self.operation.motion, lambda: self.biot * self.diffusivity(at))
+        K = self.kept_diffusivity(at)
         out.residual("p", GRAD, tensors.apply(K, at.grad("j")))
         if out.wants_jacobian:
             out.jacobian("p", GRAD, "j", GRAD, K)
+
+    def kept_diffusivity(self, at: Points) -> np.ndarray:
+        """a c_s s s (ne, nq, dim, dim), computed once for a motion."""
+        return at.kept(self.name, self.operation.motion, lambda: self.biot * self.diffusivity(at))
 
     def diffusivity(self, at: Points) -> np.ndarray:
         """Extra diffusivity c_s s s (ne, nq, dim, dim); depends on the motion, on no unknown."""
