@@ -11,29 +11,21 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from porolub.errors import SolveError
+from porolub.mesh import library
+from porolub.mesh.library import check
 
 Array = NDArray[np.float64]
 
 
 @lru_cache(maxsize=1)
 def petsc_library() -> ctypes.CDLL:
-    """The PETSc library this process already uses."""
-    with open("/proc/self/maps", encoding="utf-8") as maps:
-        paths = {line.split()[-1] for line in maps if "libpetsc" in line}
-    if not paths:
-        raise SolveError("PETSc's shared library is not loaded: is petsc4py installed?")
-    lib = ctypes.CDLL(sorted(paths)[0])
+    """The PETSc library this process already uses, told what the functions below take."""
+    lib = library.petsc_library()
     pointer = ctypes.c_void_p
     lib.MatMPIAIJGetSeqAIJ.argtypes = [pointer] * 4
     lib.MatSeqAIJGetArray.argtypes = [pointer, pointer]
     lib.MatSeqAIJRestoreArray.argtypes = [pointer, pointer]
     return lib
-
-
-def _check(error: int) -> None:
-    if error:
-        raise PETSc.Error(error)
 
 
 @contextmanager
@@ -48,7 +40,7 @@ def values_of_rank(mat: PETSc.Mat, own: int, others: int) -> Iterator[tuple[Arra
     """The stored values of this rank's rows of a parallel AIJ matrix, row by row, to be written:
     (own,) in columns of its own and (others,) in columns of other ranks."""
     parts = ctypes.c_void_p(), ctypes.c_void_p()
-    _check(petsc_library().MatMPIAIJGetSeqAIJ(mat.handle, *map(ctypes.byref, parts), None))
+    check(petsc_library().MatMPIAIJGetSeqAIJ(mat.handle, *map(ctypes.byref, parts), None))
     with _values(parts[0].value, own) as first, _values(parts[1].value, others) as second:
         yield first, second
     mat.stateIncrease()
@@ -57,8 +49,8 @@ def values_of_rank(mat: PETSc.Mat, own: int, others: int) -> Iterator[tuple[Arra
 @contextmanager
 def _values(handle: int | None, count: int) -> Iterator[Array]:
     pointer = ctypes.POINTER(ctypes.c_double)()
-    _check(petsc_library().MatSeqAIJGetArray(handle, ctypes.byref(pointer)))
+    check(petsc_library().MatSeqAIJGetArray(handle, ctypes.byref(pointer)))
     try:
         yield np.ctypeslib.as_array(pointer, (count,)) if count else np.empty(0)
     finally:
-        _check(petsc_library().MatSeqAIJRestoreArray(handle, ctypes.byref(pointer)))
+        check(petsc_library().MatSeqAIJRestoreArray(handle, ctypes.byref(pointer)))
