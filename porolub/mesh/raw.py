@@ -85,9 +85,12 @@ def match_rows(table: Index, rows: Index) -> Index:
 
 
 def check_boundaries(raw: RawMesh) -> None:
-    """Raises SceneError unless every boundary facet is outside and in one boundary only."""
+    """Raises SceneError unless cells that share the corners of a face share the face, and every
+    boundary facet is outside and in one boundary only."""
     faces = np.vstack([raw.cells[:, list(face)] for face in raw.cell.faces])
     distinct, place = distinct_rows(face_keys(faces))
+    if faces.shape[1] == 4:
+        _check_diagonals(raw, faces, place)
     outer = distinct[np.bincount(place) == 1]
     owner = np.full(len(outer), -1)
     for number, (name, facets) in enumerate(raw.boundaries.items()):
@@ -107,3 +110,18 @@ def check_boundaries(raw: RawMesh) -> None:
                 "facets: each facet must belong to one boundary only."
             )
         owner[place] = number
+
+
+def _check_diagonals(raw: RawMesh, faces: Index, place: Index) -> None:
+    """Quads of equal `place` have equal corners; they are one face if the diagonals are equal."""
+    ends = np.stack([np.sort(faces[:, ::2], axis=1), np.sort(faces[:, 1::2], axis=1)])
+    diagonal = (ends[..., 0] * len(raw.points) + ends[..., 1]).min(axis=0)
+    of_place = np.zeros(len(faces), dtype=np.int64)
+    of_place[place] = diagonal
+    wrong = np.flatnonzero(of_place[place] != diagonal)
+    if len(wrong):
+        where = raw.points[faces[wrong[0]]].mean(axis=0)
+        raise SceneError(
+            f"the mesh has two cells near {where.tolist()} (mesh units) that list the corners of "
+            "the face between them in different orders: one of them is twisted."
+        )
