@@ -10,9 +10,13 @@ Index = NDArray[np.int64]
 
 
 def add_middles(places: Array, cells: Index, cell: Cell) -> None:
-    """Fill the rows of `places` beyond the vertices with the means of the vertices they join."""
+    """Fill the rows of `places` beyond the vertices with the means of the vertices they join.
+
+    The vertices are added in the order of their numbers: the same to the last bit from
+    whichever of its cells, and so on all ranks, if the numbers follow the same order there.
+    """
     column = cell.vertices
     for parents in cell.parents():
         nodes = cells[:, column : column + len(parents)]
-        places[nodes] = places[cells[:, parents]].mean(axis=2)
+        places[nodes] = places[np.sort(cells[:, parents], axis=2)].mean(axis=2)
         column += len(parents)

@@ -35,7 +35,7 @@ def partition(mesh: Whole | None, surface: str, comm: MPI.Intracomm) -> Index:
     surface: the boundary to spread evenly, if the mesh has it.
     """
     if comm.size == 1:
-        return np.zeros(0 if mesh is None else len(mesh.nodes), dtype=np.int64)
+        return np.zeros(0 if mesh is None else len(mesh.raw.cells), dtype=np.int64)
     by_graph = _graph_parts(mesh, comm)
     if mesh is None or surface not in mesh.facets:
         return by_graph
@@ -54,7 +54,7 @@ def partition(mesh: Whole | None, surface: str, comm: MPI.Intracomm) -> Index:
 
 def _graph_parts(mesh: Whole | None, comm: MPI.Intracomm) -> Index:
     """Parts (ncell,) by PT-Scotch from the graph of cells that share faces."""
-    count = comm.bcast(None if mesh is None else len(mesh.nodes))
+    count = comm.bcast(None if mesh is None else len(mesh.raw.cells))
     mine = count if mesh is not None else 0
     pairs = np.zeros((0, 2), np.int64) if mesh is None else mesh.neighbours
     both = np.vstack([pairs, pairs[:, ::-1]])

@@ -18,6 +18,7 @@ def main(case: str, path: str, output: str) -> None:
         "triangle": lambda: scene("sector", element="triangle"),
         "barrel": lambda: scene("barrel", 3, crown_radius=0.2),
         "file": lambda: scene("file", path=path),
+        "body": lambda: scene("file", 3, path=path),
     }
     comm = MPI.COMM_WORLD
     mesh = build_mesh(cases[case](), comm, length_scale=1e-3)

@@ -4,14 +4,25 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from mpi4py import MPI
 
+from porolub.mesh import plex
 from porolub.mesh.partition import CELL_EXCESS, SURFACE_EXCESS, column_parts, excess
+from porolub.mesh.raw import RawMesh
 from porolub.mesh.read import read_mesh
-from porolub.mesh.whole import whole
+from porolub.mesh.topology import Topology
+from porolub.mesh.whole import Whole, whole
 from tests.mesh.scenes import barrel_file, box_file
 
 SCRIPT = Path(__file__).with_name("balance_ranks.py")
 THIN, THICK = (24, 3, 8), (8, 8, 6)
+
+
+def on_one_rank(raw: RawMesh) -> Whole:
+    dm = plex.from_cells(raw, raw.cell, MPI.COMM_SELF)
+    mesh = whole(raw, Topology.of(dm, raw.cell))
+    dm.destroy()
+    return mesh
 
 
 @pytest.mark.mpi
@@ -33,7 +44,7 @@ def test_ranks_share_cells_and_surface(run_mpi, tmp_path):
 @pytest.mark.parametrize("ranks", [2, 3, 4, 7])
 def test_columns_take_all_cells_below_a_facet(tmp_path, ranks):
     path = barrel_file(tmp_path / "a.msh", hexahedra=True, counts=THICK, width=8e-3)
-    mesh = whole(read_mesh(path, 3, 1e-3, {"lubricated"}), 2)
+    mesh = on_one_rank(read_mesh(path, 3, 1e-3, {"lubricated"}))
     part = column_parts(mesh, "lubricated", ranks)
     assert set(part) == set(range(ranks))
     at = mesh.facets["lubricated"][:, 0]
@@ -52,16 +63,10 @@ def test_excess_is_that_of_the_fullest_part():
 
 
 @pytest.mark.parametrize("hexahedra", [False, True])
-@pytest.mark.parametrize("degree", [1, 2])
-def test_nodes_and_neighbours_of_a_whole_mesh(tmp_path, degree, hexahedra):
+def test_neighbours_share_a_face(tmp_path, hexahedra):
     raw = read_mesh(box_file(tmp_path / "a.msh", order=1, hexahedra=hexahedra), 3, 1e-3, {"top"})
-    mesh = whole(raw, degree)
-    assert len(np.unique(mesh.nodes)) == len(mesh.places)
-    distinct = np.unique(np.round(mesh.places, 9), axis=0)
-    assert len(distinct) == len(mesh.places)  # no node is there twice
+    mesh = on_one_rank(raw)
     outer = sum(len(rows) for rows in mesh.facets.values())
     assert 2 * len(mesh.neighbours) + outer == len(raw.cells) * len(raw.cell.faces)
-    shared = [
-        len(np.intersect1d(raw.cells[a], raw.cells[b])) for a, b in mesh.neighbours
-    ]
+    shared = [len(np.intersect1d(raw.cells[a], raw.cells[b])) for a, b in mesh.neighbours]
     assert set(shared) == {len(raw.cell.faces[0])}

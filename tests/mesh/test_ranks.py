@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.mesh.scenes import sector_file
+from tests.mesh.scenes import barrel_file, sector_file
 
 SCRIPT = Path(__file__).with_name("gather_ranks.py")
 
@@ -19,9 +19,28 @@ def by_number(values, number):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("case", ["sector", "triangle", "barrel", "file"])
+@pytest.mark.parametrize("case", ["sector", "triangle", "barrel"])
 def test_same_mesh_on_any_number_of_ranks(run_mpi, tmp_path, case):
-    path = sector_file(tmp_path / "a.msh", order=2, quads=True)
+    compare_ranks(run_mpi, tmp_path, case, "none")
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("quads", [False, True])
+@pytest.mark.parametrize("order", [1, 2])
+def test_same_plane_mesh_from_a_file(run_mpi, tmp_path, order, quads):
+    path = sector_file(tmp_path / "a.msh", order=order, quads=quads)
+    compare_ranks(run_mpi, tmp_path, "file", path)
+
+
+@pytest.mark.mpi
+@pytest.mark.parametrize("hexahedra", [False, True])
+@pytest.mark.parametrize("order", [1, 2])
+def test_same_body_from_a_file(run_mpi, tmp_path, order, hexahedra):
+    path = barrel_file(tmp_path / "a.msh", order=order, hexahedra=hexahedra)
+    compare_ranks(run_mpi, tmp_path, "body", path)
+
+
+def compare_ranks(run_mpi, tmp_path, case, path):
     found = {}
     for ranks in (1, 2, 4):
         output = tmp_path / f"{ranks}.npz"
@@ -29,7 +48,7 @@ def test_same_mesh_on_any_number_of_ranks(run_mpi, tmp_path, case):
         found[ranks] = dict(np.load(output))
     one = found[1]
     names = [key for key in one if key.startswith(("facets", "nodes"))]
-    assert len(names) == (12 if case == "barrel" else 8)
+    assert len(names) == (12 if case in ("barrel", "body") else 8)
     for ranks, data in found.items():
         count = len(one["x"])
         np.testing.assert_array_equal(np.sort(data["owned"]), np.arange(count))
@@ -62,6 +81,25 @@ def test_more_ranks_than_cells(run_mpi):
         assert mesh.global_cell_count == 2
         assert mesh.global_node_count == 15
         assert MPI.COMM_WORLD.allreduce(len(mesh.facets("top").cells)) == 2
+        """,
+    )
+
+
+@pytest.mark.mpi
+def test_more_ranks_than_cells_of_a_file(run_mpi, tmp_path):
+    path = barrel_file(tmp_path / "a.msh", order=1, hexahedra=True, counts=(2, 1, 1))
+    run_mpi(
+        4,
+        f"""
+        from mpi4py import MPI
+        from porolub.mesh import build_mesh
+        from tests.mesh.scenes import scene
+
+        mesh = build_mesh(scene("file", 3, path="{path}"), MPI.COMM_WORLD)
+        assert mesh.global_cell_count == 2
+        assert mesh.global_node_count == 45
+        assert mesh.cells.shape[1] == 27
+        assert MPI.COMM_WORLD.allreduce(len(mesh.facets("lubricated").cells)) == 2
         """,
     )
 
