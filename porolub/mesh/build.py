@@ -30,6 +30,7 @@ def build_mesh(
     length_scale: float = 1.0,
     along: int | None = None,
     across: int | None = None,
+    deep: int | None = None,
     edges: Sequence[float] | None = None,
     edge_size: float | None = None,
     edge_band: float = 0.0,
@@ -44,7 +45,7 @@ def build_mesh(
     `edge_band` are in that mesh unit. All keywords but `length_scale` and `degree` are for
     structured shapes; a mesh file is taken as it is.
 
-    along, across, degree: in place of the scene's values
+    along, across, deep, degree: in place of the scene's values
     edges: arc positions along the lubricated surface (0 in its middle) to refine toward, to
         elements of `edge_size` within `edge_band` of them
     surface_ratio: size across the layer of the element at the surface over that at the bone
@@ -61,7 +62,7 @@ def build_mesh(
         raise SceneError(
             'mesh.element = "triangle" does not fit scene.dimension = 3; allowed there: quad.'
         )
-    counts = along or scene.mesh.along, across or scene.mesh.across, scene.mesh.deep
+    counts = along or scene.mesh.along, across or scene.mesh.across, deep or scene.mesh.deep
     near = () if edges is None else tuple(edges)
     ticks: tuple[Array, ...] | None = None
     if comm.rank == 0:  # to the last bit the same on all ranks; warnings are logged once

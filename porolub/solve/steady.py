@@ -35,7 +35,7 @@ log = logging.getLogger(__name__)
 EDGES_APART = 0.5  # thicknesses between two places to refine toward
 FAILURES_ALLOWED = 2  # meshes without a steady state before the sequence is given up
 ALONE = {2: 3000, 3: 300}  # cells below which a mesh of the sequence is left to one rank
-COARSEST = 80  # elements along the surface on the first mesh, at most
+COARSEST = {2: 80, 3: 40}  # elements along the surface on the first mesh, at most
 
 
 @dataclass(frozen=True)
@@ -44,15 +44,22 @@ class Level:
 
     along: int
     across: int
+    deep: int = 0  # 0: in 2D
     graded: bool = False
 
     @property
     def name(self) -> str:
-        return f"{self.along} x {self.across}" + (" graded" if self.graded else "")
+        counts = [n for n in (self.along, self.across, self.deep) if n]
+        return " x ".join(map(str, counts)) + (" graded" if self.graded else "")
 
     @property
     def cells(self) -> int:
-        return self.along * self.across
+        return self.along * self.across * max(self.deep, 1)
+
+    def coarser(self) -> Level:
+        """Half the elements each way, but three where there were as many."""
+        across, deep = (min(n, max(3, -(-n // 2))) for n in (self.across, self.deep))
+        return Level(-(-self.along // 2), across, deep)
 
 
 @dataclass(frozen=True)
@@ -96,17 +103,15 @@ class Outcome:
 
 def levels_of(scene: Any) -> list[Level]:
     """Mesh sequence of a scene, coarsest first; one entry without coarser meshes."""
-    along, across = scene.mesh.along, scene.mesh.across
-    last = Level(along, across, scene.mesh.grading == "contact")
+    mesh = scene.mesh
+    last = Level(mesh.along, mesh.across, mesh.deep, mesh.grading == "contact")
     if scene.geometry.shape == "file" or lubricated_name(scene) is None:
         return [last]
     levels = [last]
     if last.graded:
-        levels.insert(0, Level(along, across))
-    while levels[0].along > COARSEST:
-        first = levels[0]
-        across = min(first.across, max(3, -(-first.across // 2)))
-        levels.insert(0, Level(-(-first.along // 2), across))
+        levels.insert(0, Level(mesh.along, mesh.across, mesh.deep))
+    while levels[0].along > COARSEST[scene.dimension]:
+        levels.insert(0, levels[0].coarser())
     return levels
 
 
@@ -225,7 +230,7 @@ class SteadySolver:
     def _model(self, level: Level, scales: Any, edges: tuple[float, ...], comm: Any) -> Model:
         options: dict[str, Any] = {}
         if self.scene.geometry.shape != "file":
-            options = {"along": level.along, "across": level.across}
+            options = {"along": level.along, "across": level.across, "deep": level.deep}
             if level.graded and edges:
                 size = self.scene.mesh.edge_size
                 options |= {"edges": edges, "edge_size": (size or 10e-6) / scales.length}

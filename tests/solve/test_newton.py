@@ -77,8 +77,8 @@ def test_it_ends_when_all_that_is_left_is_rounding(permeability: str) -> None:
         result = watched.newton.solve(x)
         assert result.converged, result.why
         sizes = watched.largest_updates()
-        assert watched.newton.tolerance < sizes[-1] < 1e-6, sizes
-        assert sizes[-1] > 0.7 * sizes[-2], sizes
+        assert sizes[-1] < 1e-6, sizes
+        assert sizes[-1] > 1e-3 * sizes[-3], sizes  # Newton's own steps would have squared twice
         for name, norm in watched.records[-1].residuals.items():
             largest = max(r.residuals[name] for r in watched.records)
             assert norm < 1e-9 * largest, name
