@@ -41,7 +41,7 @@ SPLIT_SECONDS_AN_ITERATION = 8e-9
 SPLIT_ITERATIONS = 40
 SPLIT_SPREAD = 1.15
 
-DIRECT_UP_TO = {2: 1_000_000, 3: 40_000}
+DIRECT_UP_TO = {2: 1_000_000, 3: 25_000}
 """Unknowns up to which solver.preset = "auto" factorises, by dimension."""
 
 

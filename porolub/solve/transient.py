@@ -14,8 +14,8 @@ from porolub.solve.balance import FluidBalance
 from porolub.solve.derived import Derived, scalars_of
 from porolub.solve.drive import drive
 from porolub.solve.gather import gather_fields, gather_surface
-from porolub.solve.newton import Newton
 from porolub.solve.linear import Linear
+from porolub.solve.newton import Newton
 from porolub.solve.options import fixed_steps, refuse_unused_together
 from porolub.solve.pacing import ease, landing, longest, next_picture, stops
 from porolub.solve.periodic import difference_of_periods

@@ -96,7 +96,6 @@ class VertexSpace:
         itself = self._fine[self._own_rows][row] == self._coarse[P.indices]
         keep = np.where(fine[row], itself, ~coarse[P.indices]) & (P.data != 0)
         indptr = np.concatenate([[0], np.cumsum(np.bincount(row[keep], minlength=P.shape[0]))])
-        mat = PETSc.Mat().createAIJ(self._sizes, csr=(indptr.astype(PETSc.IntType),
+        return PETSc.Mat().createAIJ(self._sizes, csr=(indptr.astype(PETSc.IntType),
                                                       self._numbers[P.indices[keep]],
                                                       P.data[keep]), comm=dofs.mesh.comm)
-        return mat
