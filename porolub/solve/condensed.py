@@ -94,7 +94,7 @@ class Condensed:
                 self.projected.append(self._keep(field))
                 if name == "w":  # w is the rate of u
                     block["u", "u"].axpy(self.model.system.rate, field.forces,
-                                         PETSc.Mat.Structure.SUBSET_NONZERO_PATTERN)
+                                         PETSc.Mat.Structure.DIFFERENT_NONZERO_PATTERN)
         nest = [[block[r, c] for c in self.splits] for r in self.splits]
         return self._keep(PETSc.Mat().createNest(nest, comm=comm))
 

@@ -17,8 +17,9 @@ class Linear:
     From the moment it is made its options are those of the process; one is in use at a time.
     """
 
-    def __init__(self, model: Model) -> None:
-        self.preset = preset_of(model.scene, model.dofs.size)
+    def __init__(self, model: Model, preset: str = "") -> None:
+        """``preset``: in place of the scene's."""
+        self.preset = preset or preset_of(model.scene, model.dofs.size)
         use(self.preset)
         self.context = Condensed(model) if option("pc_type") == "fieldsplit" else None
 

@@ -4,7 +4,10 @@
 ``fieldsplit``  flexible GMRES; contact, approach and what is projected eliminated exactly (see
                 solve/condensed.py), then a Schur complement over displacement | pressure, the film
                 being the pressure's trace on the surface.
-``nested``      the same with the pressure split once more: layer | film.  Three blocks.
+``nested``      the same with the pressure split once more: layer | film.  Three blocks, so that
+                the layer's may be given to multigrid where its factors are too large:
+                -fieldsplit_p_fieldsplit_layer_pc_type hypre (in time; a steady state at a high
+                Peclet number then takes hundreds of iterations).
 ``auto``        direct or fieldsplit, whichever is cheaper for this dimension and size.
 
 Options by their usual PETSc names; what the user gives goes before.  With any other -pc_type the
@@ -26,6 +29,7 @@ _OUTER: dict[str, str] = {
     "ksp_rtol": "1e-5",  # Newton needs no more iterations than with 1e-8; 1e-3 costs some
     "ksp_max_it": "300",  # a failure: the preconditioner needs 10 to 60
     "ksp_gmres_restart": "100",  # beyond what is needed: a restart forgets the film's few modes
+    "ksp_gmres_cgs_refinement_type": "refine_ifneeded",  # else it stalls at 1e-6: far from normal
     "pc_type": "fieldsplit",
     "pc_fieldsplit_type": "schur",
     "pc_fieldsplit_schur_fact_type": "upper",  # a lower factor saves no iteration worth its cost
@@ -65,7 +69,8 @@ NESTED: dict[str, str] = _OUTER | _DISPLACEMENT | _MASSES | {
     "fieldsplit_p_pc_type": "fieldsplit",
     "fieldsplit_p_pc_fieldsplit_type": "symmetric_multiplicative",
     "fieldsplit_p_fieldsplit_layer_ksp_type": "preonly",
-    "fieldsplit_p_fieldsplit_layer_pc_type": "hypre",  # diffusion and transport in the pores
+    "fieldsplit_p_fieldsplit_layer_pc_type": "lu",  # hypre, too, where storage outweighs transport
+    "fieldsplit_p_fieldsplit_layer_pc_factor_mat_solver_type": "mumps",
     "fieldsplit_p_fieldsplit_film_ksp_type": "preonly",
     "fieldsplit_p_fieldsplit_film_pc_type": "lu",  # a surface: cheap, and the hard coefficients
     "fieldsplit_p_fieldsplit_film_pc_factor_mat_solver_type": "mumps",

@@ -132,8 +132,9 @@ class Splitting:
             places = start + np.arange(len(self._film), dtype=np.int32)
             for part, chosen in (("layer", ~self._film), ("film", self._film)):
                 numbers = index_set(places[chosen], pc.comm)
-                pc.setFieldSplitIS((part, numbers))
                 self._made.append(numbers)
+                if numbers.getSize():  # without a film, or without pores, there is one of them
+                    pc.setFieldSplitIS((part, numbers))
             pc.setFromOptions()
 
     def free(self) -> None:
