@@ -35,6 +35,7 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
                                   interrupt.raise_if_asked)
             outcome = solver.solve()
         finish(scene, outcome, Path(out_dir), quiet)
+        outcome.destroy()
         return 0
     finally:
         close_logging()

@@ -107,6 +107,7 @@ def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: boo
                 recorder.checkpoint(solver.resume, now=True)
             shown.done()  # its status would get between the lines of the tables
             finish(scene, outcome, out_dir, quiet)
+            solver.destroy()
         return 0
     finally:
         close_logging()

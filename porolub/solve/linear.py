@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import atexit
+from weakref import WeakSet
+
 from petsc4py import PETSc
 
 from porolub.scene.cost import preset_used
@@ -22,13 +25,20 @@ class Linear:
         self.preset = preset or preset_of(model.scene, model.dofs.size)
         use(self.preset)
         self.context = Condensed(model) if option("pc_type") == "fieldsplit" else None
+        self._pc: PETSc.PC | None = None
+        _in_use.add(self)
 
     def attach(self, ksp: PETSc.KSP) -> None:
         """To be called when the KSP has read its options."""
         if self.context is not None:
-            pc = ksp.getPC()
-            pc.setType(PETSc.PC.Type.PYTHON)
-            pc.setPythonContext(self.context)
+            self._pc = ksp.getPC()
+            self._pc.setType(PETSc.PC.Type.PYTHON)
+            self._pc.setPythonContext(self.context)
+
+    def detach(self) -> None:
+        """Take the preconditioner out of the KSP."""
+        if self._pc is not None:
+            self._pc.setType(PETSc.PC.Type.NONE)
 
     def linearise(self, x: PETSc.Vec) -> None:
         """The matrix has been computed anew at x. Collective."""
@@ -36,8 +46,24 @@ class Linear:
             self.context.linearise(x)
 
     def destroy(self) -> None:
+        """Free what PETSc holds; the KSP may be gone already, or be kept by PETSc to the end."""
+        self.detach()
+        if self._pc is not None:
+            self._pc.destroy()
+            self._pc = None
         if self.context is not None:
             self.context.destroy()
+            self.context = None
+
+
+_in_use: WeakSet[Linear] = WeakSet()
+
+
+@atexit.register
+def _let_go() -> None:
+    """PETSc is finalised after this: it must not call Python, which is going, to destroy."""
+    for linear in list(_in_use):
+        linear.detach()
 
 
 def preset_of(scene: object, unknowns: int) -> str:

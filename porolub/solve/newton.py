@@ -287,13 +287,20 @@ class Newton:
         """Why SNES itself gave up."""
         reasons = PETSc.SNES.ConvergedReason
         if reason == reasons.DIVERGED_LINEAR_SOLVE:
-            self._why = "the linear solver failed: the matrix is singular to working precision"
+            self._why = self._linear_failure()
         elif reason == reasons.DIVERGED_LINE_SEARCH and self.system.lowest_jacobian > 0.0:
             self._why = "the line search found no better state"
         elif reason in (reasons.DIVERGED_LINE_SEARCH, reasons.DIVERGED_FNORM_NAN):
             self._not_defined()
         else:
             self._why = f"SNES stopped with reason {reason}"
+
+    def _linear_failure(self) -> str:
+        ksp = self.snes.getKSP()
+        if ksp.getConvergedReason() == PETSc.KSP.ConvergedReason.DIVERGED_MAX_IT:
+            return (f"the linear solver did not converge in {ksp.getIterationNumber()} "
+                    'iterations; solver.preset = "direct" needs none')
+        return "the linear solver failed: the matrix is singular to working precision"
 
     def destroy(self) -> None:
         for o in (*([self.snes] if self._owned else []), self.matrix, self.residual):

@@ -100,6 +100,10 @@ class Outcome:
     def __post_init__(self) -> None:
         self.status = self.status or ("converged" if self.converged else "failed")
 
+    def destroy(self) -> None:
+        """Free all that PETSc holds."""
+        _free(self.model, self.x)
+
 
 def levels_of(scene: Any) -> list[Level]:
     """Mesh sequence of a scene, coarsest first; one entry without coarser meshes."""

@@ -77,6 +77,13 @@ class TransientSolver:
                 return failed
         return self._march()
 
+    def destroy(self) -> None:
+        """Free all that PETSc holds; the outcome is of no use afterwards."""
+        if hasattr(self, "stepper"):
+            self.stepper.x.destroy()
+            self.stepper.destroy()
+            self.model.destroy()
+
     def _march(self) -> Outcome:
         time = self.scene.time
         self.watch.begin(self.now * self.unit, time.end)
