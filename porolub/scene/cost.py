@@ -35,10 +35,10 @@ DIRECT_SPREAD = 1.4  # memory of the fullest rank over the mean, on more ranks t
 
 # The iterative solver, per entry of the matrix: bytes of the blocks and of their multigrid
 # hierarchy, seconds of the set-up and of an iteration; iterations of a Newton step.
-SPLIT_BYTES = 25.0
-SPLIT_SECONDS = 120e-9
-SPLIT_SECONDS_AN_ITERATION = 8e-9
-SPLIT_ITERATIONS = 40
+SPLIT_BYTES = 16.0
+SPLIT_SECONDS = 80e-9
+SPLIT_SECONDS_AN_ITERATION = 2.1e-9
+SPLIT_ITERATIONS = 20
 SPLIT_SPREAD = 1.15
 
 DIRECT_UP_TO = {2: 1_000_000, 3: 25_000}

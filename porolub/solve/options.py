@@ -90,7 +90,8 @@ def text_of_options(preset: str) -> str:
     """All options that a run with a preset has in force, the user's first, as PETSc reads them."""
     users = {k: v for k, v in PETSc.Options().getAll().items() if k not in _ours}
     defaults = {k: v for k, v in (NEWTON | STEPS | PRESETS[preset]).items() if k not in users}
-    lines = [f"-{k} {v}" for k, v in sorted(users.items())] + [f"{MARK}{preset}:"]
+    lines = [f"-{k} {v or ''}".rstrip() for k, v in sorted(users.items())]
+    lines.append(f"{MARK}{preset}:")
     return "\n".join([*lines, *(f"-{k} {v}" for k, v in defaults.items())])
 
 
