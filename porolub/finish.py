@@ -38,7 +38,8 @@ def finish(scene: Any, outcome: Outcome, out_dir: Path, quiet: bool) -> None:
     interrupted = outcome.status == "interrupted"
     start = time.perf_counter()
 
-    write_results(out_dir, report, scene, options_used(scene), plots=not interrupted,
+    options = options_used(scene) if comm.rank == 0 else ""  # may count a mesh file
+    write_results(out_dir, report, scene, options, plots=not interrupted,
                   history_written=transient, comm=comm)
     outcome.clock.add("output", start)
     if comm.rank == 0 and not quiet and not interrupted:

@@ -37,7 +37,7 @@ class Recorder:
     def __init__(self, directory: Path, scene: Any, comm: Any, progress: Progress,
                  toml: str) -> None:
         self.directory, self.comm, self.progress = directory, comm, progress
-        self.toml, self.digest = toml, scene.digest()
+        self.toml, self.digest = toml, on_root(comm, scene.digest)
         self._due = 0.0
 
     def open(self, resume: Resume | None) -> list[StepRecord]:

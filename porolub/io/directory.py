@@ -157,7 +157,8 @@ def _write_only_state(
     on_root(comm, clear)
     if report.state is not None:
         resume = Resume(states=(report.state,), orders=(0,), step=0.0)
-        write_checkpoint(directory / CHECKPOINT, resume, toml, scene.digest(), comm)
+        digest = on_root(comm, scene.digest)
+        write_checkpoint(directory / CHECKPOINT, resume, toml, digest, comm)
 
 
 def _time(report: Report) -> float:

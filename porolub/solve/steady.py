@@ -157,7 +157,7 @@ class SteadySolver:
             self.newton_iterations += found.newton_iterations
             self.linear_iterations += found.linear_iterations
             self.rejected += found.rejected
-            if found.preset == final_preset(self.scene):
+            if last or found.preset == final_preset(self.scene):
                 refuse_unused_together(self._user_options, self.comm)
             failures += not found.result.converged
             if last or failures == FAILURES_ALLOWED:
