@@ -77,8 +77,8 @@ def presets(overrides: list[str]) -> None:
             for name in ("fieldsplit", "nested", "direct")}
     base = rows["direct"]
     print(f"{base['unknowns']:,} unknowns, a Newton step:")
-    print(f"{'preset':12s}{'iterations':>12s}{'linear solve':>14s}{'whole step':>12s}{'memory':>10s}"
-          f"{'time':>8s}{'memory':>8s}")
+    print(f"{'preset':12s}{'iterations':>12s}{'linear solve':>14s}{'whole step':>12s}"
+          f"{'memory':>10s}{'time':>8s}{'memory':>8s}")
     for name, r in rows.items():
         whole = r["assembly"] + r["linear_solve"]
         print(f"{name:12s}{r['iterations']:12.0f}{r['linear_solve']:12.1f} s{whole:10.1f} s"

@@ -48,9 +48,10 @@ def stable(scene: Scene) -> bool:
 RATES = {"steady": 0.0, "short step": 1e4}  # per consolidation time of the layer
 
 
-def newtons_step(model: Model, preset: str, rate: float) -> tuple[NDArray[np.float64], int]:
+def newtons_step(model: Model, preset: str, rate: float, tolerance: float = 1e-11
+                 ) -> tuple[NDArray[np.float64], int]:
     """Newton's step from a wavy, pressed state by a preset, and its linear iterations."""
-    set_options("-ksp_rtol 1e-11" if preset != "direct" else "")
+    set_options(f"-ksp_rtol {tolerance}" if preset != "direct" else "")
     system = model.system
     x = vector(model, waves(model.dofs, 0.003), conditions=True)
     if "v0" in model.dofs.fields:
@@ -82,3 +83,15 @@ def test_a_newton_step_is_that_of_the_direct_solver(scene: Scene, preset: str, r
         found, iterations = newtons_step(model, preset, rate)
     assert np.abs(found - exact).max() < 1e-5 * np.abs(exact).max()
     assert iterations <= (60 if stable(scene) else 200)
+
+
+@pytest.mark.parametrize("rate", RATES.values(), ids=RATES)
+@pytest.mark.parametrize("job", ["case1", "case1_bonded"])
+def test_iterations_hardly_grow_with_refinement(job: str, rate: float) -> None:
+    """Eight digits, twelve times the elements; the benchmark tests.bench.iterations has more."""
+    counts = []
+    for along, across in ((40, 4), (70, 7), (140, 14)):
+        with model_of(case1(along, across, job=job)) as model:
+            counts.append(newtons_step(model, "fieldsplit", rate, 1e-8)[1])
+    assert max(counts) <= 30
+    assert counts[-1] <= 1.3 * counts[0] + 1, counts
