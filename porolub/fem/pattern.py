@@ -119,6 +119,11 @@ class Pattern:
     def _shared(self) -> SharedRows:
         return SharedRows(self._dofs, self.indptr, self.indices)
 
+    @cached_property
+    def _share(self) -> Array:
+        """This rank's values in a parallel matrix, and a zero behind them."""
+        return np.zeros(len(self.indices) + 1)
+
     @contextmanager
     def values(self, mat: PETSc.Mat) -> Iterator[Array]:
         """Zeroed values in the order of the pattern; what is added to them gets into ``mat``."""
@@ -128,7 +133,8 @@ class Pattern:
                 yield values
                 self._fix(values)
         else:
-            values = np.zeros(len(self.indices) + 1)
+            values = self._share  # kept: fresh memory costs more than what is computed into it
+            values[...] = 0.0
             yield values[:-1]
             self._fix(values)
             self._shared.insert(mat, values)

@@ -20,6 +20,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
 Index = NDArray[np.int64]
 MINE, TOLD = 1, 2  # who knows of an entry: this rank, others
+AT_ONCE = 2**16  # entries: NumPy widens their numbers, in memory that should stay in the cache
 
 
 class SharedRows:
@@ -103,7 +104,9 @@ class SharedRows:
         ends = np.cumsum(self._told)
         with coo.values_of_rank(mat, *map(len, self._sources)) as parts:
             for source, part in zip(self._sources, parts, strict=True):
-                np.take(values, source, out=part, mode="clip")
+                for start in range(0, len(source), AT_ONCE):
+                    some = slice(start, start + AT_ONCE)
+                    np.take(values, source[some], out=part[some], mode="clip")
             for first, last in zip(ends - self._told, ends, strict=True):  # no place twice
                 place, here = self._told_place[first:last], self._told_here[first:last]
                 for part, chosen in zip(parts, (here, ~here), strict=True):
