@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from porolub.scene import Scene, load_scene
 from porolub.solve.derived import Derived, scalars
 from porolub.solve.gather import gather_surface
+from porolub.solve.linear import Linear
 from porolub.solve.newton import Clock, Newton
 from porolub.solve.steady import Outcome, SteadySolver
 
@@ -82,7 +83,7 @@ def assert_steady(outcome: Outcome) -> None:
     model = outcome.model
     assert model.system.rate == 0.0
     before = outcome.x.copy()
-    newton = Newton(model.system, Clock())
+    newton = Newton(model.system, Clock(), linear=Linear(model))
     newton.solve(before, max_iterations=1)
     before.axpy(-1.0, outcome.x)
     change = max(model.dofs.field_norms(before, np.inf).values())
