@@ -15,6 +15,7 @@ from mpi4py import MPI
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
+from porolub.errors import SolveError
 from porolub.mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -123,6 +124,8 @@ class Dofs:
             numbers[dofs] = (known[:, None] + np.arange(f.components)).ravel()
         if np.any(numbers < 0):
             raise RuntimeError("a dof has no global number: boundary nodes differ between ranks")
+        if numbers.max(initial=0) > np.iinfo(np.int32).max:
+            raise SolveError("More than 2^31 unknowns: this PETSc counts them in 32 bits.")
         return numbers.astype(np.int32)
 
     def _owners_value(self, values: Array) -> Array:

@@ -39,7 +39,7 @@ SPLIT_BYTES = 16.0
 SPLIT_SECONDS = 80e-9
 SPLIT_SECONDS_AN_ITERATION = 2.1e-9
 SPLIT_ITERATIONS = 20
-SPLIT_SPREAD = 1.15
+SPLIT_SPREAD = 1.5  # rows of the interface, and patterns that one rank's matrix shares
 
 DIRECT_UP_TO = {2: 1_000_000, 3: 25_000}
 """Unknowns up to which solver.preset = "auto" factorises, by dimension."""

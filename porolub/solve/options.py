@@ -133,4 +133,6 @@ def refuse_unused(names: list[str]) -> None:
         if not used.value:
             near = difflib.get_close_matches(name, KNOWN, n=1)
             hint = f"; did you mean -{near[0]}?" if near else "."
+            if name in KNOWN:
+                hint = ": it belongs to another solver.preset or kind of scene."
             raise SceneError(f"--petsc -{name}: no solver of this scene reads that option{hint}")

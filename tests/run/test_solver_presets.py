@@ -67,3 +67,12 @@ def test_another_preconditioner_for_the_whole_matrix_is_the_users_to_choose(tmp_
     assert (result.returncode, result.stderr) == (0, "")
     summary = read_summary(tmp_path / "here" / "summary.json")
     assert summary["linear_iterations"] == summary["newton_iterations"]
+
+
+def test_an_option_of_another_preset_is_said_to_be_one(tmp_path: Path) -> None:
+    result = porolub("run", JOBS / "joint3d.toml", *SMALL, "--quiet", "--out", "here",
+                     "--petsc", "-fieldsplit_u_pc_type lu", cwd=tmp_path)
+    assert result.returncode == 2
+    (line,) = result.stderr.splitlines()
+    assert "-fieldsplit_u_pc_type" in line
+    assert "another solver.preset" in line
