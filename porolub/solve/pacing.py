@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from porolub.scene.history import period_of
+from porolub.scene.history import History, period_of
+from porolub.solve.lookback import Lookback
 
 EASY = 3.3  # Newton iterations that steps are to take on average, where Newton limits them
 STEPS_OF_A_PERIOD = 40  # at least; with 30 what follows a reversal still costs rejections
+RATE_ERROR = 5.0  # tolerances; of a given approach's rate, beside its largest
 SAME_STOP = 1e-12  # of the time: stops nearer than this are one, but for rounding
 
 
@@ -30,6 +32,52 @@ def longest(scene: Any, unit: float) -> float:
     periods = [p for p in map(period_of, scene.histories().values()) if p is not None]
     shortest = min(periods, default=np.inf)
     return float(min(scene.time.step_max or np.inf, shortest / STEPS_OF_A_PERIOD) / unit)
+
+
+class GivenRate:
+    """Steps over which BDF differences a given approach well.
+
+    Between rigid walls the film's pressure is the approach's rate times a factor.  Its error is
+    that of the rate, which TS does not see: TS looks at how smooth the pressure itself is, and
+    where the pressure's highest derivative passes through zero it would take any step.
+    """
+
+    def __init__(self, approach: History, end: float, unit: float, tolerance: float) -> None:
+        """``end`` in s, ``unit`` of scaled time in s."""
+        self._at, self._unit = approach.at, unit
+        span = min(end, approach.period or end)
+        times = np.linspace(0.0, span, 401)
+        moved = np.diff([approach.at(t) for t in times])
+        self._allowed = RATE_ERROR * tolerance * float(np.abs(moved).max()) / times[1]
+
+    def limit(self, size: float, lookback: Lookback) -> float:
+        """The step of at most ``size`` (scaled) whose rate is good enough."""
+        if lookback.steps == 0:  # a (re)start is short anyway
+            return size
+        for _ in range(20):
+            error = self._error(size, lookback)
+            if error <= self._allowed:
+                break
+            size *= float(np.clip((self._allowed / error) ** 0.5, 0.5, 0.95))
+        return size
+
+    def _error(self, size: float, lookback: Lookback) -> float:
+        """|differenced rate - rate| at the end of a step, m/s."""
+        t = lookback.entries[0].time + size
+        weights = lookback.weights(t, half=False)
+        times = np.array([t, *(e.time for e in lookback.nodes(half=False))]) * self._unit
+        values = np.array([self._at(time) for time in times])
+        e = 1e-3 * size * self._unit  # from before t alone: there may be a kink at it
+        rate = 3.0 * values[0] - 4.0 * self._at(times[0] - e) + self._at(times[0] - 2.0 * e)
+        return float(abs(weights @ values / self._unit - rate / (2.0 * e)))
+
+
+def given_rate(scene: Any, unit: float) -> GivenRate | None:
+    """For a scene whose only unknown is the film's pressure under an approach that changes."""
+    approach = scene.load.approach if scene.load is not None else None
+    if scene.solid is not None or not isinstance(approach, History):
+        return None
+    return GivenRate(approach, scene.time.end, unit, scene.time.tolerance)
 
 
 def landing(size: float, left: float) -> float:

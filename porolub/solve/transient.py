@@ -17,7 +17,7 @@ from porolub.solve.gather import gather_fields, gather_surface
 from porolub.solve.linear import Linear
 from porolub.solve.newton import Newton
 from porolub.solve.options import fixed_steps, refuse_unused_together
-from porolub.solve.pacing import ease, landing, longest, next_picture, stops
+from porolub.solve.pacing import ease, given_rate, landing, longest, next_picture, stops
 from porolub.solve.periodic import difference_of_periods
 from porolub.solve.place import place_in_words
 from porolub.solve.report import FrameData, Resume, StepRecord
@@ -105,9 +105,11 @@ class TransientSolver:
         return self._outcome(True, "reached the end")
 
     def _march_to(self, stop: float) -> Outcome | None:
-        limit = longest(self.scene, self.unit)
+        limit, given = longest(self.scene, self.unit), given_rate(self.scene, self.unit)
         while stop - self.now > RESOLVED * stop:
             size = min(landing(self._next, stop - self.now), limit)
+            if given is not None:
+                size = given.limit(size, self.stepper.lookback)
             step = self.stepper.step(size)
             if self._user_options:
                 refuse_unused_together(self._user_options, self.comm)

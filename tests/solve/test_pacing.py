@@ -2,10 +2,23 @@
 
 import math
 
+import numpy as np
 import pytest
 
 from porolub.scene import Scene, scene_from_dict
-from porolub.solve.pacing import STEPS_OF_A_PERIOD, ease, landing, longest, next_picture, stops
+from porolub.scene.harmonic import Harmonic
+from porolub.solve.lookback import Entry, derivative_weights
+from porolub.solve.pacing import (
+    RATE_ERROR,
+    STEPS_OF_A_PERIOD,
+    GivenRate,
+    ease,
+    given_rate,
+    landing,
+    longest,
+    next_picture,
+    stops,
+)
 
 UNIT = 0.25  # s
 
@@ -80,3 +93,43 @@ def test_pictures_are_due_by_the_clock() -> None:
     for now, due in ((0.0, 0.1), (0.05, 0.1), (0.1 - 1e-16, 0.2), (0.1, 0.2), (0.31, 0.4)):
         assert next_picture(of_a_period, now) == pytest.approx(due)
         assert next_picture(of_the_run, 2 * now) == pytest.approx(2 * due)
+
+
+class Looking:
+    """A lookback on steps of one size, of order 2."""
+
+    steps = 5
+
+    def __init__(self, size: float) -> None:
+        self.entries = [Entry(math.tau - n * size, np.empty(0), {}, 0.0, 2) for n in range(3)]
+
+    def nodes(self, half: bool) -> list[Entry]:
+        return self.entries[:2]
+
+    def weights(self, t: float, half: bool) -> np.ndarray:
+        return derivative_weights(np.array([t, *(e.time for e in self.nodes(half))]))
+
+
+def wave() -> Harmonic:
+    """An approach that turns with 1 rad/s and 1 m."""
+    return Harmonic.model_construct(mean=0.0, amplitude=1.0, frequency=0.5 / math.pi)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-3, 1e-4])
+def test_a_given_approach_is_differenced_well_enough(tolerance: float) -> None:
+    """BDF2 with even steps is wrong by h^2/3 where all of the wave's third derivative is."""
+    given = GivenRate(wave(), 1.0, 1.0, tolerance)
+    allowed = math.sqrt(3.0 * RATE_ERROR * tolerance)
+    assert given.limit(0.9 * allowed, Looking(0.9 * allowed)) == 0.9 * allowed
+    assert 0.5 * allowed < given.limit(1.3 * allowed, Looking(allowed)) < 1.3 * allowed
+
+
+def test_a_straight_approach_allows_any_step() -> None:
+    table = scene_from_dict({
+        "geometry": {"shape": "block", "width": "10 mm", "thickness": "1 mm"},
+        "mesh": {"along": 8, "across": 1}, "film": {"viscosity": "1 Pa*s"}, "time": {"end": "1 s"},
+        "load": {"approach": {"times": ["0 s", "1 s"], "values": ["-20 um", "-10 um"]}}})
+    given = given_rate(table, UNIT)
+    assert given is not None
+    assert given.limit(0.3, Looking(0.01)) == 0.3
+    assert given_rate(scene("1 kN/m"), UNIT) is None
