@@ -226,12 +226,18 @@ class Dofs:
         if self.owned[k]:
             v.array[self.global_numbers[k] - v.getOwnershipRange()[0]] = value
 
+    def owned_part(self, name: str, local: NDArray) -> NDArray:
+        """Of values per local dof (size_local,), those of one field's owned dofs."""
+        where = self.range[name]
+        return np.asarray(local[where][self.owned[where]])
+
+    def owned_numbers(self, name: str) -> NDArray[np.int32]:
+        """Global numbers of one field's owned dofs, ascending."""
+        return self.owned_part(name, self.global_numbers)
+
     def index_set(self, name: str) -> PETSc.IS:
         """Owned global dofs of one field."""
-        part = np.zeros(self.size_local, bool)
-        part[self.range[name]] = True
-        return PETSc.IS().createGeneral(self.global_numbers[part & self.owned],
-                                        comm=self.mesh.comm)
+        return PETSc.IS().createGeneral(self.owned_numbers(name), comm=self.mesh.comm)
 
     def counts(self) -> dict[str, int]:
         """Global number of unknowns of each field."""

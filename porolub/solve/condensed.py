@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from porolub.solve.eliminated import ContactRows, index_set, owned_numbers
+from porolub.solve.eliminated import ContactRows, index_set
 from porolub.solve.model import Model
 from porolub.solve.projected import ENTERS, Projected
 from porolub.solve.splitting import Splitting
@@ -37,10 +37,10 @@ class Condensed:
     def __init__(self, model: Model) -> None:
         self.model, self.dofs = model, model.dofs
         fields = model.dofs.fields
-        self.numbers = {name: owned_numbers(model, name) for name in fields}
+        self.numbers = {name: model.dofs.owned_numbers(name) for name in fields}
         self.splits = [name for name in SPLITS if name in fields]
-        if covered := set(fields) - {*SPLITS, *ENTERS, "l", "v0"}:
-            raise ValueError(f"no split holds {covered}: its unknowns would stay 0")
+        if missed := set(fields) - {*SPLITS, *ENTERS, "l", "v0"}:
+            raise ValueError(f"no split holds {missed}: its unknowns would stay 0")
         self.contact = ContactRows(model) if "l" in fields else None
         self.drags = "l" in fields and bool(model.scene.contact.friction_traction)
         self.splitting = Splitting(model, self.splits)
@@ -67,8 +67,8 @@ class Condensed:
         self._place = {name: self.numbers[name] - self._first for name in self.splits}
         blocks = self._blocks(matrix)
         self._inner = self.splitting.set_up(blocks, held)
-        self._reduced, self._answer = self._keep(blocks.createVecLeft()), self._keep(
-            blocks.createVecRight())
+        self._reduced = self._keep(blocks.createVecLeft())
+        self._answer = self._keep(blocks.createVecRight())
         self._parts = {name: self._keep(blocks.getNestSubMatrix(k, k).createVecRight())
                        for k, name in enumerate(self.splits)}
         self._set_border(matrix)
@@ -85,7 +85,7 @@ class Condensed:
         block = {(r, c): self._keep(matrix.createSubMatrix(rows[r], columns[c]))
                  for r in self.splits for c in self.splits}
         if self.contact is not None:
-            self.contact.couple(matrix, columns["u"], columns.get("p"))
+            self.contact.couple(matrix, rows["u"], columns["u"], columns.get("p"))
             if self.drags:
                 self.contact.drag(block["u", "u"], block.get(("u", "p")))
         for name, enters in ENTERS.items():

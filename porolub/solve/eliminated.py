@@ -17,12 +17,6 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int32]
 
 
-def owned_numbers(model: Model, name: str) -> Ints:
-    """Global numbers of this rank's unknowns of a field, ascending."""
-    where = model.dofs.range[name]
-    return model.dofs.global_numbers[where][model.dofs.owned[where]]
-
-
 def index_set(numbers: Ints, comm: PETSc.Comm) -> PETSc.IS:
     """Global numbers as PETSc's index set."""
     return PETSc.IS().createGeneral(np.asarray(numbers, dtype=PETSc.IntType), comm=comm)
@@ -37,16 +31,12 @@ class ContactRows:
         nodes = dofs.nodes["l"]
         nodes = nodes[mesh.owned[nodes]]
         self.rows = dofs.global_numbers[dofs.base["l"][nodes]]
-        into = np.broadcast_to(np.asarray(model.plane.toward), (len(mesh.coordinates), mesh.dim))
-        constraints = model.system.constraints
-        into = into.copy()
-        turned = constraints.rotated
-        into[turned] = np.einsum("nij,ni->nj", constraints.frame, into[turned])
-        free = np.ones(dofs.size_local, bool)
-        free[constraints.fixed] = False
+        into = np.zeros(dofs.size_local)
+        dofs.field("u", into)[...] = model.plane.toward
+        into = model.system.stored(into)
+        into[model.system.constraints.fixed] = 0.0
         first = dofs.base["u"][nodes]
-        components = first[:, None] + np.arange(mesh.dim)
-        chosen = np.abs(np.where(free[components], into[nodes], 0.0)).argmax(axis=1)
+        chosen = np.abs(into[first[:, None] + np.arange(mesh.dim)]).argmax(axis=1)
         self._partners = dofs.global_numbers[first + chosen]
         self._made: list[PETSc.Mat] = []
 
@@ -60,16 +50,15 @@ class ContactRows:
         self.partners = self._partners[self.active]
         stands = np.arange(self._first, end, dtype=np.int32)
         stands[self.partners - self._first] = self.rows[self.active]
-        self.stand_ins = stands[np.asarray(u) - self._first]
-        return self.stand_ins
+        return stands[u - np.int32(self._first)]
 
-    def couple(self, matrix: PETSc.Mat, u: PETSc.IS, p: PETSc.IS | None) -> None:
+    def couple(self, matrix: PETSc.Mat, stand_ins: PETSc.IS, u: PETSc.IS, p: PETSc.IS | None
+               ) -> None:
         """Extract what leads to and from the contact pressure. Collective."""
         self.destroy()
-        comm = matrix.comm
-        sets = [index_set(self.stand_ins, comm), index_set(self.rows, comm),
-                index_set(self.partners, comm), index_set(self.rows[self.active], comm)]
-        stand_ins, contact, partners, active = sets
+        sets = [index_set(numbers, matrix.comm)
+                for numbers in (self.rows, self.partners, self.rows[self.active])]
+        contact, partners, active = sets
         self.push = matrix.createSubMatrix(stand_ins, contact)
         self.of_u = matrix.createSubMatrix(partners, u)
         self.of_p = matrix.createSubMatrix(partners, p) if p is not None else None

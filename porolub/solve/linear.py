@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import atexit
+from typing import Any
 from weakref import WeakSet
 
 from petsc4py import PETSc
@@ -66,11 +67,11 @@ def _let_go() -> None:
         linear.detach()
 
 
-def preset_of(scene: object, unknowns: int) -> str:
+def preset_of(scene: Any, unknowns: int) -> str:
     """The preset a scene asks for, on a mesh with so many unknowns."""
-    return preset_used(scene.solver.preset, scene.dimension, unknowns)  # type: ignore[attr-defined]
+    return preset_used(scene.solver.preset, scene.dimension, unknowns)
 
 
-def final_preset(scene: object) -> str:
+def final_preset(scene: Any) -> str:
     """The preset on the scene's own mesh."""
-    return preset_of(scene, estimate_unknowns(scene)["total"])  # type: ignore[arg-type]
+    return preset_of(scene, estimate_unknowns(scene)["total"])

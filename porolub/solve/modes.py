@@ -34,7 +34,7 @@ def rigid_motions(system: System) -> Array:
         local[where] = motion.ravel()
         local = system.stored(local)
         local[constraints.fixed] = 0.0
-        rows.append(local[where][dofs.owned[where]])
+        rows.append(dofs.owned_part("u", local))
     return np.array(rows)
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from petsc4py import PETSc
 
 from porolub.errors import SceneError
-from porolub.fem.coo import petsc_library
+from porolub.mesh.library import petsc_library
 from porolub.solve.presets import DIRECT, FIELDSPLIT, NESTED, PRESETS
 
 NEWTON: dict[str, str] = {

@@ -40,8 +40,7 @@ class SchurMatrix:
         self._matrix = self._extra.create_matrix() if self._extra.terms else None
         fixed = np.zeros(dofs.size_local, bool)
         fixed[full.constraints.fixed] = True
-        pressures = np.arange(dofs.range["p"].start, dofs.range["p"].stop)
-        self._given = fixed[pressures[dofs.owned[pressures]]]
+        self._given = dofs.owned_part("p", fixed)
 
     def linearise(self, x: PETSc.Vec) -> None:
         """Estimate at a state. Collective."""

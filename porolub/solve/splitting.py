@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from porolub.solve.eliminated import index_set, owned_numbers
+from porolub.solve.eliminated import index_set
 from porolub.solve.model import Model
 from porolub.solve.modes import near_nullspace, rigid_motions
 from porolub.solve.schur import SchurMatrix
@@ -32,8 +32,7 @@ class Displacements:
         self._motions = rigid_motions(model.system)
         fixed = np.zeros(model.dofs.size_local, bool)
         fixed[model.system.constraints.fixed] = True
-        where = model.dofs.range["u"]
-        self._fixed = fixed[where][model.dofs.owned[where]]
+        self._fixed = model.dofs.owned_part("u", fixed)
         self._held = self._fixed
 
     def prepare(self, K: PETSc.Mat, held: Mask) -> list[Any]:
@@ -54,7 +53,7 @@ class Displacements:
         coarse = K.ptap(P)
         coarse.setBlockSize(self.dim)
         motions = np.where(self._held, 0.0, self._motions)
-        space = near_nullspace(coarse, motions[:, self._space.rows_of_vertices])
+        space = near_nullspace(coarse, motions[:, : self._space.count])
         pc.setMGLevels(2)
         pc.setMGInterpolation(1, P)
         pc.getMGSmoother(1).setOperators(K)
@@ -71,7 +70,7 @@ class Splitting:
         self.schur = SchurMatrix(model) if len(splits) > 1 else None
         self.displacements = Displacements(model) if "u" in splits else None
         self._film = self._film_pressures(model) if "p" in splits else np.zeros(0, bool)
-        self._pressures = owned_numbers(model, "p") if "p" in splits else None
+        self._pressures = model.dofs.owned_numbers("p") if "p" in splits else None
         self._made: list[Any] = []
 
     @staticmethod
@@ -82,8 +81,7 @@ class Splitting:
         if model.lubricated is not None:
             base = dofs.base["p"][model.mesh.boundary_nodes(model.lubricated)]
             on[base[base >= 0]] = True
-        where = dofs.range["p"]
-        return np.asarray(on[where][dofs.owned[where]])
+        return dofs.owned_part("p", on)
 
     def set_up(self, blocks: PETSc.Mat, held: Mask) -> PETSc.PC:
         """Factors, hierarchies and all; ``held`` displacements are given, besides the scene's.

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
 
-from porolub.fem.coo import petsc_library
 from porolub.fem.dofs import Field
+from porolub.mesh.library import petsc_library
 from porolub.solve.balance import fluid_balance
 from porolub.solve.drive import drive
 from porolub.solve.linear import Linear

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 from petsc4py import PETSc
-from scipy.sparse import block_diag, csr_array, identity, kron
+from scipy.sparse import bsr_array, csr_array, identity, kron
 
 from porolub.solve.model import Model
 
@@ -36,45 +36,44 @@ def node_weights(model: Model) -> csr_array:
 
 
 class VertexSpace:
-    """Interpolation of displacements from the vertices; ``held`` may change between solves."""
+    """Interpolation of displacements from the vertices; ``held`` may change between solves.
+
+    count: displacements of this rank's own vertices, the first of its own displacements.
+    """
 
     def __init__(self, model: Model) -> None:
         dofs, mesh = model.dofs, model.mesh
         dim = mesh.dim
-        self.dofs, self.dim = dofs, dim
+        self.dofs = dofs
         constraints = model.system.constraints
-        frames = np.tile(np.eye(dim), (len(mesh.coordinates), 1, 1))
-        frames[constraints.rotated] = constraints.frame
-        every = kron(node_weights(model), identity(dim), format="csr")
+        weights = kron(node_weights(model), identity(dim), format="csr")
+        size = dim * mesh.nvertices
         if len(constraints.rotated):
-            turn = block_diag(frames, format="csr")
-            size = dim * mesh.nvertices
-            every = csr_array(turn.T @ every @ turn[:size, :size])
-        self._weights = csr_array(every)
-        where = dofs.base["u"]
-        components = np.arange(dim)
-        self._fine = (where[:, None] + components).ravel()  # local dof of each row
-        self._coarse = (where[:mesh.nvertices, None] + components).ravel()  # and column
+            count = len(mesh.coordinates)
+            frames = np.tile(np.eye(dim), (count, 1, 1))
+            frames[constraints.rotated] = constraints.frame
+            turn = bsr_array((frames, np.arange(count), np.arange(count + 1))).tocsr()
+            weights = turn.T @ weights @ turn[:size, :size]
+        self._weights = csr_array(weights)
+        # local dof of each row, node by node; the vertices come first, here and among the owned
+        self._fine = (dofs.base["u"][:, None] + np.arange(dim)).ravel()
+        self._coarse = self._fine[:size]
         self._own_rows = np.flatnonzero(dofs.owned[self._fine])
-        order = np.argsort(dofs.global_numbers[self._fine[self._own_rows]])
-        self._own_rows = self._own_rows[order]
         own = dofs.owned[self._coarse]
-        comm = mesh.comm
-        count = int(own.sum())
-        start = comm.scan(count) - count
-        numbers = np.full(dofs.size_local, -1.0)
-        ranked = np.argsort(dofs.global_numbers[self._coarse[own]])
-        mine = np.empty(count)
-        mine[ranked] = start + np.arange(count)
-        numbers[self._coarse[own]] = mine
-        x = dofs.vector()
-        x.array[:] = numbers[dofs.owned]
-        self._numbers = dofs.to_local(x)[self._coarse].astype(PETSc.IntType)
+        self.count = int(own.sum())
+        start = mesh.comm.scan(self.count) - self.count
+        numbers = np.zeros(dofs.size_local)
+        numbers[self._coarse[own]] = start + np.arange(self.count)
+        self._numbers = self._known_to_all(numbers)[self._coarse].astype(PETSc.IntType)
+        self._sizes = (len(self._own_rows), PETSc.DETERMINE), (self.count, PETSc.DETERMINE)
+
+    def _known_to_all(self, local: Array) -> Array:
+        """Values per local dof with those of other ranks' dofs as their owners have them."""
+        x = self.dofs.vector()
+        x.array[:] = local[self.dofs.owned]
+        known = self.dofs.to_local(x)
         x.destroy()
-        self.rows_of_vertices = np.searchsorted(
-            dofs.global_numbers[self._fine[self._own_rows]],
-            np.sort(dofs.global_numbers[self._coarse[own]]))
-        self._sizes = (len(self._own_rows), PETSc.DETERMINE), (count, PETSc.DETERMINE)
+        return known
 
     def interpolation(self, held: NDArray[np.bool_]) -> PETSc.Mat:
         """Matrix from vertex to node displacements, both in the frames they are stored in.
@@ -83,13 +82,10 @@ class VertexSpace:
         Collective.
         """
         dofs = self.dofs
-        marks = dofs.vector()
         local = np.zeros(dofs.size_local)
-        where = np.arange(dofs.range["u"].start, dofs.range["u"].stop)
-        local[where[dofs.owned[where]]] = held
-        marks.array[:] = local[dofs.owned]
-        local = dofs.to_local(marks)
-        marks.destroy()
+        where = dofs.range["u"]
+        local[where][dofs.owned[where]] = held
+        local = self._known_to_all(local)
         P = self._weights[self._own_rows]
         fine, coarse = local[self._fine[self._own_rows]] > 0, local[self._coarse] > 0
         row = np.repeat(np.arange(P.shape[0]), np.diff(P.indptr))

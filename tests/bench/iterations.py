@@ -99,7 +99,7 @@ def main(dims: list[int], preset: str, petsc: str, bonded: bool, small: bool) ->
                 rows.append(cells)
                 table.add_row(f"{peclet:g}", " x ".join(str(n) for n in mesh if n), f"{size:,}",
                               *cells, f"{time.perf_counter() - begin:.0f}")
-                print(table.rows[-1] and (peclet, mesh, size, cells), flush=True)
+                print((peclet, mesh, size, cells), flush=True)
             growth = [f"{int(b) / int(a) - 1:+.0%}" if a.isdigit() and b.isdigit() else "-"
                       for a, b in zip(rows[0], rows[-1], strict=True)]
             table.add_row("", "growth", "", *growth, end_section=True)

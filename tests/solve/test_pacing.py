@@ -128,7 +128,7 @@ def test_a_straight_approach_allows_any_step() -> None:
     table = scene_from_dict({
         "geometry": {"shape": "block", "width": "10 mm", "thickness": "1 mm"},
         "mesh": {"along": 8, "across": 1}, "film": {"viscosity": "1 Pa*s"}, "time": {"end": "1 s"},
-        "load": {"approach": {"times": ["0 s", "1 s"], "values": ["-20 um", "-10 um"]}}})
+        "load": {"approach": {"times": ["0 s", "10 s"], "values": ["-20 um", "-10 um"]}}})
     given = given_rate(table, UNIT)
     assert given is not None
     assert given.limit(0.3, Looking(0.01)) == 0.3
