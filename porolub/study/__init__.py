@@ -1,0 +1,1 @@
+"""Sweeps over MPI ranks, accuracy against time."""
