@@ -20,7 +20,7 @@ def load_scene(path: str | Path, overrides: Sequence[str] = ()) -> Scene:
     SceneError: one sentence per mistake, with the key, the value and what is allowed.
     """
     path = Path(path)
-    return scene_from_dict(apply_overrides(_tables(path), overrides), path.parent)
+    return scene_from_dict(apply_overrides(read_tables(path), overrides), path.parent)
 
 
 def scene_from_dict(d: dict[str, Any], base_dir: str | Path | None = None) -> Scene:
@@ -34,15 +34,16 @@ def scene_from_dict(d: dict[str, Any], base_dir: str | Path | None = None) -> Sc
         raise SceneError("\n".join(sentences(error, context))) from error
 
 
-def _tables(path: Path) -> dict[str, Any]:
+def read_tables(path: Path, what: str = "scene file") -> dict[str, Any]:
+    """Return the tables of a TOML file, unchecked. Raises SceneError; ``what`` says what it is."""
     try:
         with path.open("rb") as file:
             return tomllib.load(file)
     except FileNotFoundError:
-        raise SceneError(f"{path}: there is no such scene file.") from None
+        raise SceneError(f"{path}: there is no such {what}.") from None
     except OSError as error:
-        raise SceneError(f"{path}: the scene file cannot be read ({error.strerror}).") from error
+        raise SceneError(f"{path}: the {what} cannot be read ({error.strerror}).") from error
     except UnicodeDecodeError as error:
-        raise SceneError(f"{path}: the scene file must be UTF-8 text.") from error
+        raise SceneError(f"{path}: the {what} must be UTF-8 text.") from error
     except tomllib.TOMLDecodeError as error:
         raise SceneError(f"{path}: this is not valid TOML: {error}.") from error

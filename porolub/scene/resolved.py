@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -54,7 +55,17 @@ def digest(scene: "Scene") -> str:
     for key in LENGTH_OF_RUN:
         tables.get("time", {}).pop(key, None)
     if isinstance(scene.geometry, MeshFile):
-        content = scene.geometry.path.read_bytes()
-        tables["geometry"]["path"] = hashlib.sha256(content).hexdigest()
+        tables["geometry"]["path"] = _content(scene.geometry.path)
     text = json.dumps(tables, sort_keys=True, separators=(",", ":"))
     return hashlib.sha256(text.encode()).hexdigest()
+
+
+def _content(path: Path) -> str:
+    """Return a SHA-256 of a file; the cases of a sweep ask for the same one often."""
+    status = path.stat()
+    return _hashed(path, status.st_mtime_ns, status.st_size)
+
+
+@lru_cache(maxsize=64)
+def _hashed(path: Path, changed: int, size: int) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

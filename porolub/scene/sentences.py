@@ -23,7 +23,7 @@ _TAGGED: dict[str, dict[str, type[BaseModel]]] = {
     "motion": {"rotation": Rotation, "sliding": Sliding},
 }
 _TAG_KEY = {"geometry": "shape", "motion": "kind"}
-_NEEDED = {
+NEEDED = {
     "int_type": "a whole number is needed",
     "int_from_float": "a whole number is needed",
     "bool_type": "true or false is needed",
@@ -113,17 +113,17 @@ def _sentence(detail: ErrorDetails, context: dict[str, Any]) -> str:
     if kind == "extra_forbidden":
         return _unknown_key(loc, given)
     if kind == "literal_error":
-        return f"{given}: {_one_of(_expected(ctx['expected']), value)}."
+        return f"{given}: {one_of(expected(ctx['expected']), value)}."
     if kind in ("union_tag_invalid", "union_tag_not_found"):
         tag_key, tags = _TAG_KEY[str(loc[0])], list(_TAGGED[str(loc[0])])
         if kind == "union_tag_not_found":
             return f"{loc[0]}.{tag_key} is missing: allowed are {', '.join(tags)}."
         tag = value[tag_key]
-        return f"{loc[0]}.{tag_key} = {toml_value(tag)}: {_one_of(tags, tag)}."
+        return f"{loc[0]}.{tag_key} = {toml_value(tag)}: {one_of(tags, tag)}."
     if kind in ("greater_than_equal", "less_than_equal"):
         bound = f"at least {ctx['ge']}" if "ge" in ctx else f"at most {ctx['le']}"
         return f"{given}: the value must be {bound}."
-    return f"{given}: {_NEEDED.get(kind, detail['msg'])}."
+    return f"{given}: {NEEDED.get(kind, detail['msg'])}."
 
 
 def _unknown_key(loc: Loc, given: str) -> str:
@@ -154,13 +154,14 @@ def _sections_with(name: str) -> list[str]:
     ]
 
 
-def _one_of(allowed: list[str], value: Any) -> str:
+def one_of(allowed: list[str], value: Any) -> str:
+    """Say what is allowed, and which of it was meant."""
     near = difflib.get_close_matches(str(value), allowed, 1)
     hint = f" (did you mean {near[0]}?)" if near else ""
     return f"allowed are {', '.join(allowed)}{hint}"
 
 
-def _expected(text: str) -> list[str]:
+def expected(text: str) -> list[str]:
     """Split pydantic's "'a', 'b' or 'c'"."""
     return [part.strip().strip("'") for part in text.replace(" or ", ",").split(",")]
 
