@@ -69,21 +69,27 @@ def registry() -> pint.UnitRegistry[Decimal]:
     return pint.UnitRegistry(non_int_type=Decimal)
 
 
+def number_and_unit(text: str) -> tuple[Decimal, str] | None:
+    """Split ``"1.5 kN/m"`` into its number and its unit, unchecked; None if it has no number."""
+    match = _NUMBER_THEN_UNIT.fullmatch(text)
+    return None if match is None else (Decimal(match[1]), match[2])
+
+
 @lru_cache(maxsize=1024)
 def parse(text: str, kind: Kind) -> float:
     """Return the SI value of ``text``, a quantity of ``kind``. Raises NotAQuantity."""
-    match = _NUMBER_THEN_UNIT.fullmatch(text)
+    parts = number_and_unit(text)
     wanted = f'{kind.name} is needed, such as "{kind.example}"'
-    if match is None:
+    if parts is None:
         raise NotAQuantity(f"this is not a number with a unit; {wanted}")
-    number, unit_text = match.groups()
+    number, unit_text = parts
     if kind is NUMBER and not unit_text:
-        return _finite(Decimal(number))
+        return _finite(number)
     if not unit_text:
         raise NotAQuantity(f"the unit is missing; {wanted}")
     if "," in unit_text:
         raise NotAQuantity(f"a comma cannot stand in a number, write a point; {wanted}")
-    return _finite(Decimal(number) * _si_factor(unit_text, kind, wanted))
+    return _finite(number * _si_factor(unit_text, kind, wanted))
 
 
 @lru_cache(maxsize=256)
