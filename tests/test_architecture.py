@@ -19,7 +19,7 @@ ALLOWED = {
     "terms": ("laws", "fem", "mesh", "errors"),
     "solve": ("scene", "laws", "mesh", "fem", "terms", "errors"),
     "io": (*BELOW, "errors", "together", ""),
-    "study": (*BELOW, "errors", "io", "run", ""),
+    "study": (*BELOW, "errors", "io", "together", "run", ""),
     "versions": ("",),
     "interrupt": ("errors",),
     "together": ("errors",),
