@@ -26,9 +26,9 @@ FILM_PART = 0.1
 """Of the friction coefficient: where the film's is less, lubrication is not mixed."""
 
 CRITERIA = {
-    HYDRODYNAMIC: f"no contact, $|h_{{min}} + v_0| ≤ {DEFORMED:g}\\,h_{{min}}$",
+    HYDRODYNAMIC: f"no contact, $|h_{{min}} + v_0| \\leq {DEFORMED:g}\\,h_{{min}}$",
     ELASTOHYDRODYNAMIC: "no contact, surface deformed more",
-    MIXED: f"contact, $μ_f ≥ {FILM_PART:g}\\,μ$",
+    MIXED: f"contact, $μ_f \\geq {FILM_PART:g}\\,μ$",
     BOUNDARY: f"contact, $μ_f < {FILM_PART:g}\\,μ$",
 }
 """What regime() asks for, as figures say it."""
