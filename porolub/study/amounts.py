@@ -42,13 +42,24 @@ def amount(value: Any) -> Amount | None:
 @lru_cache(maxsize=1024)
 def _read(text: str) -> Amount | None:
     parts = number_and_unit(text)
-    if parts is None:
+    kind = _kind_of(parts[1]) if parts is not None else None
+    if parts is None or kind is None:
         return None
+    try:
+        return Amount(parse(text, kind), *parts, kind)
+    except NotAQuantity:  # not finite
+        return None
+
+
+@lru_cache(maxsize=256)
+def _kind_of(unit: str) -> Kind | None:
+    """Return the kind of quantity that has this unit; None if no key of a scene takes it."""
     for kind in (NUMBER, *KINDS):
         try:
-            return Amount(parse(text, kind), *parts, kind)
+            parse(f"1 {unit}", kind)
         except NotAQuantity:
             continue
+        return kind
     return None
 
 

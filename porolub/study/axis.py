@@ -118,8 +118,9 @@ def _refuse_twice(texts: Sequence[tuple[Any, ...]]) -> None:
     for values in texts:
         same = repr([(found.number, found.kind) if (found := amount(v)) else v for v in values])
         if same in seen:
-            shown = " and ".join(dict.fromkeys(_shown(v) for v in (seen[same], values)))
-            raise SceneError(f"the value {shown} stands there twice")
+            one, other = _shown(seen[same]), _shown(values)
+            twice = f"{one} stands there twice" if one == other else f"{one} and {other} are equal"
+            raise SceneError(f"values must differ, but {twice}")
         seen[same] = values
 
 
