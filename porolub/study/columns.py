@@ -20,6 +20,7 @@ FACTS = ("status", "message", "regime", "sommerfeld_number", "start", "wall")
 """What a row says beside its axes and the summary; the summary's own status is the row's."""
 NESTED = ("dofs", "wall_time", "versions")
 """Keys of the summary that hold further keys."""
+_OF_RUNS = ("time", "periods")  # further keys of transient runs
 _READY = frozenset((float, int, type(None)))
 _TEXTS = (*FACTS[:3], "start", "effects")
 
@@ -65,7 +66,7 @@ class Axis(Protocol):
 def headings(axes: Sequence[Axis]) -> list[str]:
     """Return the name of each axis's column: the axis's own or, where a column of the sweep or of
     the summary has that (approach) or HDF5 has no place for it, the scene key (load.approach)."""
-    taken = {"case", "axes", "", ".", *FACTS, *ORDER}
+    taken = {"case", "axes", "", ".", *FACTS, *ORDER, *_OF_RUNS}
     return [a.keys[0] if a.name in taken or "/" in a.name else a.name for a in axes]
 
 
@@ -83,7 +84,7 @@ def columns_of(axes: Sequence[Axis], rows: Iterable[Row]) -> dict[str, list[Cell
         columns[key] = [_cell(row.get(key)) for row in chosen]
     flat = [_flat(row.get("summary") or {}) for row in chosen]
     for key in _summary_names(flat):
-        columns[key] = [cells.get(key) for cells in flat]
+        columns.setdefault(key, [cells.get(key) for cells in flat])
     return columns
 
 
