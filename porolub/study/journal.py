@@ -47,8 +47,8 @@ class Journal:
         except OSError as error:
             self._sound = False
             raise SolveError(
-                f"{self.path}: this case cannot be noted ({error.strerror or error}). All that "
-                f"were noted before are kept: make room in {self.path.parent} and run the same "
+                f"{self.path}: this case cannot be noted ({error.strerror or error}). All cases "
+                f"noted before are kept: make room in {self.path.parent} and run the same "
                 "command again."
             ) from error
 
