@@ -35,7 +35,7 @@ from porolub.study.draw_quantities import (
 from porolub.study.draw_regimes import band_handles, draw_bands, note_below
 from porolub.study.draw_stribeck import LINE_COLOURS
 from porolub.study.log_axis import figures, log_limits
-from porolub.study.view import View, length
+from porolub.study.view import View
 
 _PAIRS = (
     ("friction coefficients", ((FRICTION, "μ"), (FRICTION_FLUID, "film $μ_f$"))),
@@ -72,7 +72,7 @@ def draw_curves(view: View) -> Figure | None:
     Without numbers the categories of the last axis stand side by side. None with two or more axes
     of numbers and where nothing converged.
     """
-    if len(view.numeric()) > 1 or not view.converged.any():
+    if len(view.numeric) > 1 or not view.converged.any():
         return None
     along = _along(view)
     shown = [(name, pairs) for name, pairs in _PAIRS if _tells(view, along, pairs)]
@@ -89,7 +89,7 @@ def draw_curves(view: View) -> Figure | None:
         _panel(ax, view, along, name, pairs)
     for ax in grid[len(shown) :]:
         ax.set_axis_off()
-    _legend(grid[len(shown)], view, [line.name for line in lines])
+    _legend(grid[len(shown)], view, along, [line.name for line in lines])
     failed = int((~view.converged).sum())
     more = len(lines) - _MOST
     note_below(
@@ -101,9 +101,7 @@ def draw_curves(view: View) -> Figure | None:
 
 
 def _along(view: View) -> _Along:
-    numeric = view.numeric()
-    varied = [k for k, axis in enumerate(view.axes) if length(axis) > 1]
-    k = numeric[0] if numeric else varied[-1] if varied else len(view.axes) - 1
+    k = [len(view.axes) - 1, *view.varied, *view.numeric][-1]
     axis, values = view.axes[k], view.along(k)
     if axis.numbers is None:
         return _Along(k, axis.name, Unit("", 1.0), values, "", axis.texts)
@@ -139,7 +137,7 @@ def _panel(ax: Axes, view: View, along: _Along, name: str,
     unit = view.unit(*(q for q, _ in pairs), logarithmic=logarithmic)
     ax.set_title(bracketed(name, unit), loc="left", fontsize=12)
     _x_axis(ax, along)
-    _y_axis(ax, everything / unit.size, logarithmic)
+    _y_axis(ax, everything / unit.size, logarithmic, above=0.06 if along.scale else 0.25)
     lines = [line for line in view.lines(along.k) if view.converged[line.rows].any()][:_MOST]
     single = len(lines) == 1
     for n, line in enumerate(lines):
@@ -148,10 +146,11 @@ def _panel(ax: Axes, view: View, along: _Along, name: str,
             pairs, _STYLES, (VERMILLION, BLUE), strict=False
         ):
             ax.plot(
-                along.x[rows], view.values(quantity)[rows] / unit.size, marker="o", ms=3.5, lw=1.8,
+                along.x[rows], view.values(quantity)[rows] / unit.size,
+                marker="o", lw=1.8, ms=3.5 if along.scale else 8,
                 color=colour if single else LINE_COLOURS[n % len(LINE_COLOURS)],
                 ls=style if along.scale else "", label=words if n == 0 else "_",
-                mfc=None if style == "-" else "white",
+                mfc=None if style == "-" else "white" if along.scale else "none",
             )  # fmt: skip
     if single and along.scale:
         rows = lines[0].rows[view.converged[lines[0].rows]]
@@ -184,27 +183,27 @@ def _x_axis(ax: Axes, along: _Along) -> None:
         ax.xaxis.set_major_locator(MaxNLocator(6))
 
 
-def _y_axis(ax: Axes, values: Array, logarithmic: bool) -> None:
+def _y_axis(ax: Axes, values: Array, logarithmic: bool, above: float) -> None:
+    """``above``: room over the highest value, where a legend may lie, as a part of the range."""
     if logarithmic:
-        limits = log_limits(values)
+        limits = log_limits(values, above=above)
         ax.set_yscale("log")
         ax.set_ylim(limits)
         figures(ax.yaxis, limits)
         return
     found = values[np.isfinite(values)]
     low, high = min(0.0, float(found.min())), max(0.0, float(found.max()))
-    margin = 0.06 * (high - low)
-    ax.set_ylim(low - margin, high + margin)
+    ax.set_ylim(low - 0.06 * (high - low), high + above * (high - low))
     ax.axhline(0, color=GREY, lw=0.8, zorder=0)
 
 
-def _legend(ax: Axes, view: View, names: list[str]) -> None:
+def _legend(ax: Axes, view: View, along: _Along, names: list[str]) -> None:
     """What colours stand for: categories, or regimes behind a single curve."""
-    handles: list[Any]
+    handles: list[Any] = []
     if len(names) > 1:
         handles = [Line2D([], [], color=LINE_COLOURS[n % len(LINE_COLOURS)], lw=2, label=name)
                    for n, name in enumerate(names[:_MOST])]  # fmt: skip
-    else:
+    elif along.scale:
         handles = band_handles(view.regime, between=":\n")
     if handles:
         ax.legend(handles=handles, loc="center left", fontsize=12, frameon=False, labelspacing=0.8)

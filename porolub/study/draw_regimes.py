@@ -85,7 +85,7 @@ def legend_above(ax: Axes, handles: Sequence[Any], columns: int = 2) -> None:
         return
     rows = -(-len(handles) // columns)
     title = ax.get_title(loc="left")
-    ax.set_title(title, loc="left", fontsize=14, pad=8 + 19 * rows, parse_math=False)
+    ax.set_title(title, loc="left", fontsize=14, pad=8 + 17.5 * rows, parse_math=False)
     ax.legend(
         handles=list(handles), loc="lower left", bbox_to_anchor=(0.0, 1.0), ncols=columns,
         fontsize=11, frameon=False, borderaxespad=0.2, borderpad=0.1, labelspacing=0.3,

@@ -27,7 +27,7 @@ from porolub.study.draw_regimes import (
     note_below,
 )
 from porolub.study.log_axis import figures, log_limits, positive
-from porolub.study.view import Line, View, length
+from porolub.study.view import Line, View
 
 SOMMERFELD = "Sommerfeld number $ηU/L$"
 _SAME = 1.01  # Sommerfeld numbers that differ by less make no curve
@@ -64,14 +64,14 @@ def stribeck_lines(view: View) -> list[Line]:
     Without such an axis each case is a line of its own, and of axes of numbers that do not change
     it there are none.
     """
-    numeric = view.numeric()
+    numeric = view.numeric
     for k in reversed(numeric):
         lines = list(view.lines(k))
         if any(varies(view.sommerfeld[line.rows]) for line in lines):
             return lines
     if numeric:
         return []
-    places = [dict(enumerate(row)) for row in view.positions.tolist()]
+    places = [{k: int(row[k]) for k in view.varied} for row in view.positions]
     return [Line(np.array([n]), view.words(fixed), fixed) for n, fixed in enumerate(places)]
 
 
@@ -177,10 +177,9 @@ def _colours(
     figure: Figure, ax: Axes, view: View, lines: list[Line]
 ) -> tuple[list[Any], list[Any]]:
     """Colour of each line and handles for the legend; a colour bar instead where that suits."""
-    others = [k for k in lines[0].fixed if length(view.axes[k]) > 1]
-    numbers = [k for k in others if k in view.numeric()]
-    if len(others) == 1 and numbers:
-        (k,) = numbers
+    others = list(lines[0].fixed)
+    if len(others) == 1 and others[0] in view.numeric:
+        k = others[0]
         axis = view.axes[k]
         logarithmic = axis.scale == "log"
         everywhere = np.asarray(axis.numbers, float)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +24,7 @@ class Line:
     """Cases along one axis, the others fixed.
 
     ``rows``: of the view, (n,), by ascending value on the axis; ``name``: what is fixed, in words,
-    "" where nothing is; ``fixed``: position on each of the other axes.
+    "" where nothing is; ``fixed``: position on each of the other axes that vary.
     """
 
     rows: Rows
@@ -96,10 +95,15 @@ class View:
         cases = self.table.columns["case"][self.rows].astype(np.intp)
         return np.stack(np.unravel_index(cases, lengths), axis=-1)
 
+    @cached_property
+    def varied(self) -> list[int]:
+        """The axes along which there are several cases."""
+        return [k for k in range(len(self.axes)) if len(np.unique(self.positions[:, k])) > 1]
+
+    @cached_property
     def numeric(self) -> list[int]:
-        """The axes with numbers, two or more."""
-        return [k for k, axis in enumerate(self.axes)
-                if axis.numbers is not None and length(axis) > 1]  # fmt: skip
+        """Those of them that have numbers."""
+        return [k for k in self.varied if self.axes[k].numbers is not None]
 
     def along(self, k: int) -> Array:
         """Value of each case on axis ``k``, SI; its position there where it has no numbers."""
@@ -111,7 +115,7 @@ class View:
 
     def lines(self, k: int) -> Iterator[Line]:
         """The cases along axis ``k``, one line for each combination of the others."""
-        others = [j for j in range(len(self.axes)) if j != k]
+        others = [j for j in self.varied if j != k]
         for where in sorted({tuple(row) for row in self.positions[:, others].tolist()}):
             found = np.flatnonzero((self.positions[:, others] == where).all(axis=1))
             found = found[np.argsort(self.along(k)[found], kind="stable")]
@@ -120,8 +124,7 @@ class View:
 
     def words(self, fixed: dict[int, int]) -> str:
         """Return what positions on some axes are called: ``speed = 1 rad/s, base = bonded``."""
-        return ", ".join(self.value_on(k, place) for k, place in fixed.items()
-                         if length(self.axes[k]) > 1)  # fmt: skip
+        return ", ".join(self.value_on(k, place) for k, place in fixed.items())
 
     def value_on(self, k: int, place: int) -> str:
         """Return what a position on axis ``k`` is called."""
@@ -131,15 +134,14 @@ class View:
 
     def slices(self, kept: list[int]) -> list[View]:
         """One view for each combination of positions on the axes that are not ``kept``."""
-        others = [j for j in range(len(self.axes)) if j not in kept and length(self.axes[j]) > 1]
+        others = [j for j in self.varied if j not in kept]
         if not others:
             return [self]
         parts = []
-        for where in product(*(range(length(self.axes[j])) for j in others)):
+        for where in sorted({tuple(row) for row in self.positions[:, others].tolist()}):
             mine = (self.positions[:, others] == where).all(axis=1)
-            if mine.any():
-                name = self.words(dict(zip(others, where, strict=True)))
-                parts.append(View(self.table, self.rows[mine], name))
+            name = self.words(dict(zip(others, where, strict=True)))
+            parts.append(View(self.table, self.rows[mine], name))
         return parts
 
     def _numbers(self, column: str) -> Array:
