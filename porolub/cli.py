@@ -22,6 +22,9 @@ from porolub.versions import versions
 PATIENCE = 10.0  # s that a rank in error waits for the others to get there too
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
+SceneOrSweep = Annotated[
+    Path, typer.Argument(metavar="SCENE|SWEEP", help="Scene or sweep file (TOML).")
+]
 Overrides = Annotated[
     list[str] | None,
     typer.Option(
@@ -116,7 +119,10 @@ def run(
 ) -> None:
     """Compute a scene and write the results."""
     from porolub.scene import load_scene
+    from porolub.study.sweep_file import is_sweep
 
+    if is_sweep(scene):
+        raise SceneError(f"{scene}: this is a sweep file; porolub sweep {scene} runs it.")
     checked = load_scene(scene, overrides or ())
     from porolub.run import run_scene
 
@@ -141,11 +147,25 @@ def restart(
 
 
 @app.command()
-def check(scene: SceneFile, overrides: Overrides = None) -> None:
-    """Validate a scene without computing; show its effects, unknowns and conventions."""
+def check(scene: SceneOrSweep, overrides: Overrides = None) -> None:
+    """Validate a scene without computing; show its effects, unknowns and conventions.
+
+    Of a sweep: its axes and cases, which of them are refused, and what they will cost.
+    """
     from porolub.scene import load_scene
     from porolub.scene.report import report
+    from porolub.study.sweep_file import is_sweep
 
+    if is_sweep(scene):
+        from porolub.study.cases import cases_of
+        from porolub.study.sweep_file import load_sweep
+        from porolub.study.sweep_report import report_sweep
+
+        sweep_of_file = load_sweep(scene, overrides or ())
+        cases = cases_of(sweep_of_file)
+        if rank_and_size()[0] == 0:
+            Console().print(report_sweep(sweep_of_file, cases))
+        return
     checked = load_scene(scene, overrides or ())
     if rank_and_size()[0] == 0:
         Console().print(report(checked))

@@ -23,20 +23,22 @@ def cost_table(cost: Cost, preset: str) -> RenderableType:
     for name, solving in (("direct", cost.direct), ("fieldsplit", cost.fieldsplit)):
         used = name == preset or (name == "fieldsplit" and preset == "nested")
         row = (preset, "[green]yes[/]") if used else (name, "no")
-        table.add_row(*row, _time(solving.seconds), *_memory(solving))
+        table.add_row(*row, duration(solving.seconds), *_memory(solving))
     counts = f"{cost.unknowns:,} unknowns, matrix of {cost.entries:,} entries. {ACCURACY}"
     return Group(table, Text(counts))
 
 
 def _memory(solving: Solving) -> list[str]:
-    return [_bytes(solving.memory_per_rank(ranks)) for ranks in RANKS]
+    return [size(solving.memory_per_rank(ranks)) for ranks in RANKS]
 
 
-def _bytes(size: float) -> str:
-    return readable(float(f"{size:.2g}"), "B")
+def size(count: float) -> str:
+    """Return bytes with two digits."""
+    return readable(float(f"{count:.2g}"), "B")
 
 
-def _time(seconds: float) -> str:
+def duration(seconds: float) -> str:
+    """Return a time with two digits, in the unit that suits it."""
     seconds = float(f"{seconds:.2g}")
     if seconds < 120:
         return f"{seconds:.2g} s"
