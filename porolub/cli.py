@@ -173,7 +173,9 @@ def check(scene: SceneOrSweep, overrides: Overrides = None) -> None:
 
 @app.command()
 def plot(
-    directory: Annotated[Path, typer.Argument(metavar="DIR", help="Output directory of a run.")],
+    directory: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Output directory of a run or a sweep.")
+    ],
     period: Annotated[
         int | None,
         typer.Option(
@@ -184,11 +186,19 @@ def plot(
         bool, typer.Option("--animate", help="Write animation.gif of the period, too.")
     ] = False,
 ) -> None:
-    """Draw the figures of a run."""
+    """Draw the figures of a run or of a sweep."""
     if not directory.is_dir():
         raise SceneError(f"{directory}: there is no such directory.")
     from porolub.io.plots import plot_directory
+    from porolub.study.sweep_plots import is_sweep_directory, plot_sweep
 
+    if is_sweep_directory(directory):
+        if period is not None or animate:
+            option = "--period" if period is not None else "--animate"
+            raise SceneError(f"{option}: this is for runs; {directory} is the output of a sweep.")
+        for path in plot_sweep(directory):
+            print(path)
+        return
     for path in plot_directory(directory, period):
         print(path)
     if animate:
