@@ -41,5 +41,5 @@ def duration(seconds: float) -> str:
     """Return a time with two digits, in the unit that suits it."""
     seconds = float(f"{seconds:.2g}")
     if seconds < 120:
-        return f"{seconds:.2g} s"
+        return f"{seconds:.3g} s"
     return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.3g} h"

@@ -13,8 +13,8 @@ from pydantic import ValidationError
 from porolub.errors import SceneError
 from porolub.scene import Scene, scene_from_dict
 from porolub.scene.resolved import LENGTH_OF_RUN
+from porolub.study.definition import Sweep, Tables
 from porolub.study.neighbours import with_neighbours
-from porolub.study.sweep import Sweep, Tables
 
 
 @dataclass(frozen=True)

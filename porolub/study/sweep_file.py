@@ -13,9 +13,11 @@ from porolub.errors import SceneError
 from porolub.scene.overrides import apply_overrides, path_of
 from porolub.scene.read import read_tables
 from porolub.study.axis import Axis, axis_of
-from porolub.study.sweep import Sweep, Tables
+from porolub.study.definition import Sweep, Tables
 from porolub.study.sweep_schema import MOST_CASES, AxisTable, SweepFile
 from porolub.study.sweep_sentences import sweep_sentences
+
+__all__ = ["Sweep", "is_sweep", "load_sweep", "read_resolved_sweep", "write_resolved_sweep"]
 
 _FILES = ("path", "table")  # keys of a scene that name a file
 

@@ -12,8 +12,8 @@ from porolub.scene.describe import toml_value
 from porolub.study.amounts import amount
 from porolub.study.axis import Axis
 from porolub.study.cases import Case
+from porolub.study.definition import Sweep
 from porolub.study.label import axis_text
-from porolub.study.sweep import Sweep
 from porolub.study.sweep_cost import SweepCost, sweep_cost
 
 FIRST = 3  # values shown of an axis before the dots, and refused cases named
@@ -48,24 +48,25 @@ def _axes_table(axes: Sequence[Axis]) -> Table:
     table = Table(title="Axes", title_justify="left")
     table.add_column("axis")
     table.add_column("keys")
+    table.add_column("positions")
     table.add_column("values")
-    table.add_column("spacing")
-    table.add_column("count", justify="right")
     for axis in axes:
         spacing = "categories" if axis.numbers is None else axis.scale
-        table.add_row(axis.name, "\n".join(axis.keys), _values(axis), spacing, str(len(axis)))
+        positions = f"{len(axis)}, {spacing}"
+        if all(len(set(map(repr, values))) == 1 for values in axis.texts):
+            table.add_row(axis.name, "\n".join(axis.keys), positions, _values(axis, 0))
+            continue
+        for column, key in enumerate(axis.keys):
+            first = (axis.name, key, positions) if column == 0 else ("", key, "")
+            table.add_row(*first, _values(axis, column))
     return table
 
 
-def _values(axis: Axis) -> str:
-    """Write the first values of an axis and the last one, by key where keys differ."""
-    same = all(len(set(map(repr, values))) == 1 for values in axis.texts)
-    lines = []
-    for column in [0] if same else range(len(axis.keys)):
-        texts = [_plain(values[column]) for values in axis.texts]
-        short = texts if len(texts) <= FIRST + 2 else [*texts[:FIRST], "...", texts[-1]]
-        lines += wrap(", ".join(short), WIDTH)
-    return "\n".join(lines).replace(HARD_SPACE, " ")
+def _values(axis: Axis, column: int) -> str:
+    """Write the first values of one of the keys and the last one."""
+    texts = [_plain(values[column]) for values in axis.texts]
+    short = texts if len(texts) <= FIRST + 2 else [*texts[:FIRST], "...", texts[-1]]
+    return "\n".join(wrap(", ".join(short), WIDTH)).replace(HARD_SPACE, " ")
 
 
 def _plain(value: object) -> str:

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from porolub.study.axis import Axis
-from porolub.study.sweep import Sweep
+from porolub.study.definition import Sweep
 
 APPROACHES = {"0 um": 0.0, "5 um": 5e-6, "20 um": 2e-5, "50 um": 5e-5}
 GRADINGS = ("none", "contact")

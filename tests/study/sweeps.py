@@ -6,7 +6,7 @@ from typing import Any
 import tomli_w
 
 from porolub.study.cases import Case, cases_of
-from porolub.study.sweep import Sweep
+from porolub.study.definition import Sweep
 from porolub.study.sweep_file import load_sweep
 from tests.scene.scenes import ROLLING
 

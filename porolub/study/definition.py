@@ -1,4 +1,4 @@
-"""A sweep: a base scene, the axes along which it is changed, and how its cases are computed."""
+"""What a sweep is: a base scene, the axes along which it changes, how its cases are computed."""
 
 import copy
 from collections.abc import Mapping
