@@ -1,6 +1,6 @@
 """What ``porolub check`` shows of a sweep: its axes, its cases, and what they will cost."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import wrap
 
 from rich.console import Group, RenderableType
@@ -13,7 +13,7 @@ from porolub.study.amounts import amount
 from porolub.study.axis import Axis
 from porolub.study.cases import Case
 from porolub.study.definition import Sweep
-from porolub.study.label import axis_text
+from porolub.study.label import axis_text, case_label
 from porolub.study.sweep_cost import SweepCost, sweep_cost
 
 FIRST = 3  # values shown of an axis before the dots, and refused cases named
@@ -27,9 +27,10 @@ def report_sweep(sweep: Sweep, cases: Sequence[Case]) -> RenderableType:
 
     Raises SceneError if a mesh file cannot be read.
     """
+    units = {axis.name: axis.unit for axis in sweep.axes}
     parts: list[RenderableType] = [Text(sweep.title, style="bold")]
     parts += [Text(f"{name}: {value}") for name, value in _origin(sweep)]
-    parts += ["", _axes_table(sweep.axes), "", *map(Text, _cases(cases))]
+    parts += ["", _axes_table(sweep.axes), "", *map(Text, _cases(cases, units))]
     cost = sweep_cost(cases, sweep.ranks_per_case)
     if cost is not None:
         parts += ["", _cost_table(cost, sweep)]
@@ -77,7 +78,7 @@ def _plain(value: object) -> str:
     return value if isinstance(value, str) and value else toml_value(value)
 
 
-def _cases(cases: Sequence[Case]) -> list[str]:
+def _cases(cases: Sequence[Case], units: Mapping[str, str]) -> list[str]:
     """Say how many cases there are, where they start from and which of them are refused."""
     refused = [case for case in cases if case.scene is None]
     warm = sum(bool(case.parents) for case in cases)
@@ -86,8 +87,8 @@ def _cases(cases: Sequence[Case]) -> list[str]:
     if refused:
         lines.append(f"Refused, each a row of the table with its message: {len(refused)}.")
     for case in refused[:FIRST]:
-        where = ", ".join(f"{key} = {toml_value(v)}" for key, v in case.values.items())
-        lines.append(f"  {where}: {case.refusal.splitlines()[0]}")
+        where = case_label(case.axes, units)
+        lines.append(f"  case {case.index}, {where}: {case.refusal.splitlines()[0]}")
     if len(refused) > FIRST:
         lines.append(f"  ... and {len(refused) - FIRST} more.")
     return lines

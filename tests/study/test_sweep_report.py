@@ -62,7 +62,7 @@ def test_cases_are_counted_by_where_they_start(tmp_path: Path) -> None:
 def test_refused_cases_are_counted_and_the_first_are_named(tmp_path: Path) -> None:
     text = shown(tmp_path, linear("contact.friction", -1, 1, 11))
     assert "Refused, each a row of the table with its message: 5." in text
-    assert "contact.friction = -1.0: contact.friction = -1.0: the value must be at least" in text
+    assert "case 0, friction = -1: contact.friction = -1.0: the value must be at least 0." in text
     assert "contact.friction = -0.6" in text
     assert "contact.friction = -0.4" not in text
     assert "... and 2 more." in text
