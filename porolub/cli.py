@@ -22,9 +22,7 @@ from porolub.versions import versions
 PATIENCE = 10.0  # s that a rank in error waits for the others to get there too
 
 SceneFile = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene file (TOML).")]
-SceneOrSweep = Annotated[
-    Path, typer.Argument(metavar="SCENE|SWEEP", help="Scene or sweep file (TOML).")
-]
+SceneOrSweep = Annotated[Path, typer.Argument(metavar="SCENE", help="Scene or sweep file (TOML).")]
 Overrides = Annotated[
     list[str] | None,
     typer.Option(
