@@ -145,6 +145,36 @@ def restart(
 
 
 @app.command()
+def sweep(
+    file: Annotated[Path, typer.Argument(metavar="SWEEP", help="Sweep file (TOML).")],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", metavar="DIR", help="If not given: results/<sweep file name>."),
+    ] = None,
+    overrides: Overrides = None,
+    retry_failed: Annotated[
+        bool, typer.Option("--retry-failed", help="Compute failed cases again.")
+    ] = False,
+    part: Annotated[
+        str,
+        typer.Option("--part", metavar="K/N", help="Only the K-th of N parts, for job arrays."),
+    ] = "",
+    petsc: Petsc = "",
+    quiet: Quiet = False,
+) -> None:
+    """Compute the cases of a sweep, as many side by side as there are ranks for.
+
+    The same command again goes on where it was stopped: cases that are done are not repeated.
+    """
+    from porolub.study.sweep import run_sweep
+    from porolub.study.sweep_file import load_sweep
+
+    loaded = load_sweep(file, overrides or ())
+    out_dir = out if out is not None else Path("results") / file.stem
+    raise typer.Exit(run_sweep(loaded, out_dir, part, retry_failed, petsc, quiet))
+
+
+@app.command()
 def check(scene: SceneOrSweep, overrides: Overrides = None) -> None:
     """Validate a scene without computing; show its effects, unknowns and conventions.
 

@@ -12,7 +12,7 @@ from porolub.interrupt import Interrupt
 from porolub.io.log import close_logging, setup_logging
 from porolub.io.progress import Progress
 from porolub.run_transient import run_transient
-from porolub.solve.options import set_options
+from porolub.solve.options import forget_options, set_options
 from porolub.solve.steady import SteadySolver
 from porolub.together import on_root
 
@@ -39,3 +39,4 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
         return 0
     finally:
         close_logging()
+        forget_options()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time as wall
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,9 @@ from porolub.io.progress import Progress
 from porolub.io.summary import read_summary
 from porolub.scene import load_scene, scene_from_dict
 from porolub.scene.compare import differences
-from porolub.solve.options import set_options, users_options
+from porolub.solve.options import forget_options, set_options, users_options
 from porolub.solve.report import FrameData, Resume, StepRecord
+from porolub.solve.steady import Outcome
 from porolub.solve.transient import TransientSolver
 from porolub.solve.watch import Watch
 from porolub.together import on_root
@@ -92,25 +93,41 @@ def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: boo
     comm, out_dir = MPI.COMM_WORLD, Path(out_dir)
     root = comm.rank == 0
     user_options = set_options(petsc_options)
-    resumed = resume is not None
-    toml = on_root(comm, lambda: begin_run(out_dir, scene, options_used(scene), resume=resumed))
+    toml = begin(scene, out_dir, comm, resumed=resume is not None)
     setup_logging(None)
-    on_root(comm, lambda: setup_logging(out_dir, resume=resumed))
+    on_root(comm, lambda: setup_logging(out_dir, resume=resume is not None))
     try:
         with Interrupt() as interrupt, Progress("quiet" if quiet or not root else "auto") as shown:
             recorder = Recorder(out_dir, scene, comm, shown, toml)
-            records = recorder.open(resume)
-            solver = TransientSolver(scene, comm, recorder.watch(), user_options,
-                                     interrupt.asked, interrupt.raise_if_asked)
-            outcome = solver.solve(resume, records)
-            if solver.records:
-                recorder.checkpoint(solver.resume, now=True)
+            solver, outcome = recorded(scene, recorder, user_options, interrupt, resume)
             shown.done()  # its status would get between the lines of the tables
             finish(scene, outcome, out_dir, quiet)
             solver.destroy()
         return 0
     finally:
         close_logging()
+        forget_options()
+
+
+def begin(scene: Any, out_dir: Path, comm: Any, resumed: bool = False) -> str:
+    """Make the output directory ready; returns the resolved scene as TOML. Collective."""
+    return str(on_root(comm, lambda: begin_run(out_dir, scene, options_used(scene),
+                                               resume=resumed)))
+
+
+def recorded(scene: Any, recorder: Recorder, user_options: Sequence[str], interrupt: Interrupt,
+             resume: Resume | None = None) -> tuple[TransientSolver, Outcome]:
+    """Take the steps; files are written as they come, the results are still to write. Collective.
+
+    The outcome is the solver's until that is destroyed.
+    """
+    records = recorder.open(resume)
+    solver = TransientSolver(scene, recorder.comm, recorder.watch(), user_options,
+                             interrupt.asked, interrupt.raise_if_asked)
+    outcome = solver.solve(resume, records)
+    if solver.records:
+        recorder.checkpoint(solver.resume, now=True)
+    return solver, outcome
 
 
 def restart(directory: Path, overrides: Any = (), petsc_options: str = "",

@@ -110,6 +110,10 @@ def fixed_steps() -> bool:
     return option("ts_adapt_type") == "none"
 
 
+class UnusedOption(SceneError):
+    """An option that no solver of the scene reads: wrong for all scenes of its kind."""
+
+
 def refuse_unused_together(names: list[str], comm: Any) -> None:
     """As ``refuse_unused`` on rank 0, which takes part in every solve; all ranks raise. Collective.
     """
@@ -121,7 +125,7 @@ def refuse_unused_together(names: list[str], comm: Any) -> None:
             problem = str(error)
     problem = comm.bcast(problem)
     if problem is not None:
-        raise SceneError(problem)
+        raise UnusedOption(problem)
 
 
 def refuse_unused(names: list[str]) -> None:

@@ -2,7 +2,8 @@
 
 On a structured shape the scene is first solved on a coarse mesh from zero, and the solution
 carried to the scene's mesh (graded toward the contact edges found on the way, if asked).  On a
-user's mesh the start-up runs on that mesh itself.
+user's mesh the start-up runs on that mesh itself.  Given neighbours, solutions of like scenes, the
+solve starts from a blend of them on the scene's mesh, and from zero only if that fails.
 """
 
 from __future__ import annotations
@@ -19,9 +20,9 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from porolub.mesh import build_mesh
-from porolub.solve.derived import Derived
 from porolub.solve.linear import Linear, final_preset
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
+from porolub.solve.neighbours import Neighbour, blended, blended_edges
 from porolub.solve.newton import Clock, Newton, NewtonResult
 from porolub.solve.options import refuse_unused_together, set_options
 from porolub.solve.place import place_in_words
@@ -30,11 +31,13 @@ from porolub.solve.scales import Scales
 from porolub.solve.startup import LIFTED, PATIENCE, PRESSED_IN, Starter, StartUp
 from porolub.solve.surface import typical_thickness
 from porolub.solve.transfer import Snapshot, restore, snapshot
+from porolub.solve.zones import contact_edges
 
 log = logging.getLogger(__name__)
-EDGES_APART = 0.5  # thicknesses between two places to refine toward
 FAILURES_ALLOWED = 2  # meshes without a steady state before the sequence is given up
 ALONE = {2: 3000, 3: 300}  # cells below which a mesh of the sequence is left to one rank
+EDGES_MOVED = 0.1  # thicknesses a place may lie off the one the mesh was refined toward
+WARM_ITERATIONS = 15  # of Newton from a blend of neighbours, before it is given up
 COARSEST = {2: 80, 3: 40}  # elements along the surface on the first mesh, at most
 
 
@@ -126,10 +129,13 @@ class SteadySolver:
                  observe: Callable[[NewtonRecord], None] = lambda record: None,
                  announce: Callable[[str, float], None] = lambda name, fraction: None,
                  user_options: Sequence[str] = (),
-                 stop: Callable[[Any], str] = lambda comm: "") -> None:
+                 stop: Callable[[Any], str] = lambda comm: "",
+                 neighbours: Sequence[Neighbour] = ()) -> None:
         """``user_options``: names of PETSc options that some solver must read; ``stop``: asked
-        in every Newton iteration whether to give up, see Newton."""
+        in every Newton iteration whether to give up, see Newton; ``neighbours``: what to start
+        from instead of zero, on a structured mesh."""
         self.scene, self.comm, self.announce = scene, comm, announce
+        self.neighbours = list(neighbours)
         self.records: list[NewtonRecord] = []
         self._observe, self._user_options, self._stop = observe, list(user_options), stop
         if not PETSc.Options().hasName("pc_type"):
@@ -143,6 +149,51 @@ class SteadySolver:
 
     def solve(self) -> Outcome:
         """Solve the scene. Raises SceneError for a scene the mesh or the model refuses."""
+        return self._from_neighbours() or self._from_zero()
+
+    def _from_neighbours(self) -> Outcome | None:
+        """On the scene's mesh at once; None without neighbours, or where Newton fails from them."""
+        if not self.neighbours:
+            return None
+        self.announce("from neighbours", 0.0)
+        edges = tuple(e / self.scales.length for e in blended_edges(self.neighbours))
+        model = self.model(edges)
+        found = self._warm(model, blended(model, self.neighbours))
+        if found is not None and self._moved(model, found[0], edges):
+            data, edges = snapshot(model, found[0]), contact_edges(model, found[0])
+            _free(model, found[0])
+            model = self.model(edges)
+            found = self._warm(model, restore(model, data))
+        if found is None:
+            log.info("Newton failed from the neighbours; starting from zero")
+            model.destroy()
+            return None
+        refuse_unused_together(self._user_options, self.comm)
+        return self._outcome(found[1], model, found[0], edges)
+
+    def _warm(self, model: Model, x: PETSc.Vec) -> tuple[PETSc.Vec, NewtonResult] | None:
+        """Newton from x, in place; None, and x freed, if it does not converge soon."""
+        newton = Newton(model.system, self.clock, self.observe, self._stop, linear=Linear(model))
+        newton.patience = PATIENCE
+        result = Starter(model, newton).straight(x, "from neighbours", WARM_ITERATIONS)
+        self.newton_iterations += newton.iterations
+        self.linear_iterations += newton.linear_iterations
+        newton.destroy()
+        if result.converged:
+            return x, result
+        self.rejected += 1
+        x.destroy()
+        return None
+
+    def _moved(self, model: Model, x: PETSc.Vec, edges: tuple[float, ...]) -> bool:
+        """Whether the mesh is refined elsewhere than the solution on it asks for. Collective."""
+        if not levels_of(self.scene)[-1].graded:
+            return False
+        now = contact_edges(model, x)
+        return any(min((abs(e - f) for f in edges), default=np.inf) > EDGES_MOVED for e in now)
+
+    def _from_zero(self) -> Outcome:
+        """Through the mesh sequence."""
         scales = self.scales
         before = Found()
         levels = levels_of(self.scene)
@@ -311,29 +362,3 @@ class SteadySolver:
 def _free(model: Model, x: PETSc.Vec) -> None:
     x.destroy()
     model.destroy()
-
-
-def contact_edges(model: Model, x: PETSc.Vec) -> tuple[float, ...]:
-    """Arc positions (mesh units) worth fine elements, increasing; empty without a surface.
-
-    The ends of the closed zone, and the ends of the pressurised zone where they lie apart (a
-    film that carries load ends in its own steep necks).
-    """
-    dofs, mesh = model.dofs, model.mesh
-    if mesh.shape is None or model.lubricated is None:
-        return ()
-    d = Derived(model, x)
-    s = d.arc()[d.mine]
-    closed = np.zeros(len(s), bool)
-    if "l" in dofs.fields:
-        closed = d.contact_pressure()[d.mine] > 0.0
-    pressurised = np.zeros(len(s), bool)
-    if "p" in dofs.fields:
-        p = d.nodal("p")[d.mine, 0]
-        pressurised = p > 0.1 * d.extreme(p, True)
-    found: list[float] = []
-    for zone in (closed, pressurised):
-        ends = (d.extreme(s[zone], False), d.extreme(s[zone], True))
-        found += [e for e in ends
-                  if np.isfinite(e) and all(abs(e - f) > EDGES_APART for f in found)]
-    return tuple(sorted(found))

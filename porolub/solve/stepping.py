@@ -170,7 +170,7 @@ class TimeStepper:
         self.lookback.accept(entry)
         self._scheme = self.model.system.rate, self.model.system.known
         self.sizes = self._sizes_of(self.x)
-        PETSc.garbage_cleanup()
+        PETSc.garbage_cleanup(self.model.mesh.comm)
         old = self.newton.reused - self._reused_before
         effort = self.newton.snes.getIterationNumber() - old * (1.0 - OLD_FACTORS_COST)
         return Step(entry.time, entry.time - before, order, self._iterations, effort, rejected)
