@@ -99,6 +99,8 @@ def _levels(values: Array, may_vanish: bool) -> _Levels | None:
     if len(found) < 4 or np.ptp(found) <= 1e-6 * np.abs(found).max():
         return None
     least = None
+    if may_vanish and found.max() <= 0:
+        return None
     if may_vanish and found.min() <= 1e-9 * found.max():
         found = found[found > 1e-9 * found.max()]
         least = float(found.min())

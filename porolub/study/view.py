@@ -15,6 +15,8 @@ from porolub.study.draw_quantities import FLUID_SHARE, Quantity, suited
 from porolub.study.label import axis_text
 from porolub.study.table import Table, TableAxis
 
+_LARGEST = 1e100  # what is larger, or one over it, drawing cannot count with
+
 Mask = NDArray[np.bool_]
 Rows = NDArray[np.intp]
 
@@ -145,12 +147,13 @@ class View:
         return parts
 
     def _numbers(self, column: str) -> Array:
-        """A column without what failed and what is not finite; NaN where there is none."""
+        """A column; NaN where there is none, or what is there is not finite or beyond sense."""
         found = self.table.columns.get(column)
         if found is None or found.dtype.kind not in "fiub":
             return np.full(len(self.rows), np.nan)
         values = found[self.rows].astype(float)
-        return np.where(self.converged & np.isfinite(values), values, np.nan)
+        values = np.where(np.abs(values) < 1 / _LARGEST, 0.0, values)
+        return np.where(self.converged & (np.abs(values) < _LARGEST), values, np.nan)
 
     def _texts(self, column: str) -> NDArray[np.str_]:
         found = self.table.columns.get(column)
