@@ -135,7 +135,7 @@ class SteadySolver:
         in every Newton iteration whether to give up, see Newton; ``neighbours``: what to start
         from instead of zero, on a structured mesh."""
         self.scene, self.comm, self.announce = scene, comm, announce
-        self.neighbours = list(neighbours)
+        self.neighbours, self.warm = list(neighbours), False  # whether they led to the solution
         self.records: list[NewtonRecord] = []
         self._observe, self._user_options, self._stop = observe, list(user_options), stop
         if not PETSc.Options().hasName("pc_type"):
@@ -169,6 +169,7 @@ class SteadySolver:
             model.destroy()
             return None
         refuse_unused_together(self._user_options, self.comm)
+        self.warm = True
         return self._outcome(found[1], model, found[0], edges)
 
     def _warm(self, model: Model, x: PETSc.Vec) -> tuple[PETSc.Vec, NewtonResult] | None:

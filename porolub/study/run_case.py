@@ -70,8 +70,7 @@ class Cases:
         self.interrupt.raise_if_asked(self.comm)
         try:
             with _together(self.comm):
-                neighbours, row["start"] = self._neighbours(task)
-                summary = self._solve(task, neighbours)
+                summary, row["start"] = self._solve(task)
             row |= {"status": summary["status"], "message": summary["message"]}
             if summary["status"] == "converged":
                 row |= {"summary": summary, "regime": regime(summary),
@@ -81,33 +80,31 @@ class Cases:
         except SceneError as error:  # what only the mesh or the model could know
             row |= {"status": "refused", "message": str(error)}
         except Exception as error:
-            row["message"] = _in_words(error)
+            row["message"] = _failure(error)
         row["wall"] = time.perf_counter() - began
         return row
 
-    def _neighbours(self, task: Task) -> tuple[list[Neighbour], str]:
-        """What to start from, and how the row says it."""
-        found = []
+    def _neighbours(self, task: Task) -> list[Neighbour]:
+        """What to start from; nothing if a state is not there."""
         try:
-            for _, key, weight in task.starts:
-                path = self._state(key)
-                found.append(Neighbour(read_solution(path, self.comm), weight))
-        except SceneError as error:  # a state taken away by hand costs iterations, no more
+            return [Neighbour(read_solution(self._state(key), self.comm), weight)
+                    for _, key, weight in task.starts]
+        except SceneError as error:  # taken away by hand: costs iterations, no more
             log.warning("%s", error)
-            return [], "zero"
-        names = ", ".join(str(index) for index, *_ in task.starts)
-        return found, f"case{'s' * (len(found) > 1)} {names}" if found else "zero"
+            return []
 
     def _state(self, key: str) -> Path:
         return self.directory / STATES / f"{key}.h5"
 
-    def _solve(self, task: Task, neighbours: list[Neighbour]) -> dict[str, Any]:
-        """Solve a scene, write what is asked for, and free what PETSc holds."""
+    def _solve(self, task: Task) -> tuple[dict[str, Any], str]:
+        """Summary of a scene and what it was found from; files are written, PETSc's memory freed.
+        """
         scene: Any = task.case.scene
         comm, directory = self.comm, self.directory / RESULTS / f"{task.case.index:04d}"
         if scene.time is None:
             steady = SteadySolver(scene, comm, user_options=self.user_options,
-                                  stop=self.interrupt.raise_if_asked, neighbours=neighbours)
+                                  stop=self.interrupt.raise_if_asked,
+                                  neighbours=self._neighbours(task))
             outcome = steady.solve()
             with _in_trouble():
                 summary = self._finish(scene, outcome, directory)
@@ -115,7 +112,7 @@ class Cases:
                     state = solution_of(outcome.model, outcome.x)
                     write_solution(self._state(task.case.key), state, comm)
             outcome.destroy()
-            return summary
+            return summary, _in_words(task) if steady.warm else "zero"
         if self.results:
             with _in_trouble():
                 recorder = Recorder(directory, scene, comm, Progress("quiet"),
@@ -131,7 +128,7 @@ class Cases:
         with _in_trouble():
             summary = self._finish(scene, outcome, directory)
         solver.destroy()
-        return summary
+        return summary, "zero"
 
     def _finish(self, scene: Any, outcome: Outcome, directory: Path) -> dict[str, Any]:
         report = make_report(scene, outcome)
@@ -167,7 +164,12 @@ def _together(comm: Any) -> Iterator[None]:
         raise
 
 
-def _in_words(error: Exception) -> str:
+def _in_words(task: Task) -> str:
+    """What a case was started from: "case 3" or "cases 3, 7"."""
+    return f"case{'s' * (len(task.starts) > 1)} {', '.join(str(i) for i, *_ in task.starts)}"
+
+
+def _failure(error: Exception) -> str:
     """What went wrong, for the row of the case."""
     if isinstance(error, SolveError):
         return str(error)
