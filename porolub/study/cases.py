@@ -88,8 +88,11 @@ def _case(
 def _coordinates(
     sweep: Sweep, position: tuple[int, ...], tables: Tables
 ) -> tuple[float | None, ...]:
-    """Return where a case lies; nowhere if it starts from zero or runs through time."""
-    if sweep.start == "zero" or "time" in tables:
+    """Return where a case lies; nowhere if it starts from zero, for it is asked to, runs through
+    time, or has a mesh from a file (only structured meshes hand on their solutions)."""
+    geometry = tables.get("geometry")
+    of_file = isinstance(geometry, dict) and geometry.get("shape") == "file"
+    if sweep.start == "zero" or "time" in tables or of_file:
         return (None,) * len(position)
     places = [axis.coordinates for axis in sweep.axes]
     return tuple(

@@ -15,6 +15,8 @@ from tests.study.sweeps import cases_along, linear, log, sweep_of
 FORCE = linear("load.force", "1 kN/m", "3 kN/m", 3)
 SPEED = log("motion.speed", "0.1 rad/s", "10 rad/s", 5)
 TIME = {"end": "1 s"}
+MESH = Path(__file__).resolve().parents[2] / "meshes" / "sector.msh"
+FILE = {**ROLLING, "geometry": {"shape": "file", "path": str(MESH)}, "mesh": {}}
 
 
 def test_the_last_axis_is_the_fastest(tmp_path: Path) -> None:
@@ -122,9 +124,9 @@ def test_neighbours_lie_along_numbers_only(tmp_path: Path) -> None:
     assert all(case.parents == () for case in meshes)
 
 
-@pytest.mark.parametrize("how", ["zero", "time", "times"])
+@pytest.mark.parametrize("how", ["zero", "time", "times", "file"])
 def test_some_sweeps_always_start_from_zero(tmp_path: Path, how: str) -> None:
-    base = changed(ROLLING, time=TIME) if how == "time" else ROLLING
+    base = {"time": changed(ROLLING, time=TIME), "file": FILE}.get(how, ROLLING)
     axes = [FORCE, SPEED] + ([{"key": "time", "values": [TIME]}] if how == "times" else [])
     start = "zero" if how == "zero" else "neighbour"
     cases = cases_along(tmp_path, *axes, base=base, start=start)
