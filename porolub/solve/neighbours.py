@@ -92,7 +92,10 @@ def solution_of(model: Model, x: PETSc.Vec) -> Solution:
 
 
 def blended(model: Model, neighbours: Sequence[Neighbour]) -> PETSc.Vec:
-    """The weighted mean of solutions on a model's mesh, its own conditions set. Collective."""
+    """The weighted mean of solutions on a model's mesh, its own conditions set. Collective.
+
+    All are of one shape, on meshes of any size and grading.
+    """
     sizes = {name: 1.0 / size for name, (size, _) in units_of(model).items()}
     used = alike(neighbours)
     marks = _marks(used)
@@ -135,7 +138,7 @@ def blended_edges(neighbours: Sequence[Neighbour]) -> tuple[float, ...]:
     nearest = max(used, key=lambda n: n.weight).solution
     logical = np.array(nearest.edges) / nearest.length + 0.5
     stretch = _Stretch.of(nearest, _marks(used))
-    return tuple(nearest.length * (stretch.forth(logical) - 0.5))
+    return tuple((nearest.length * (stretch.forth(logical) - 0.5)).tolist())
 
 
 def alike(neighbours: Sequence[Neighbour]) -> list[Neighbour]:
@@ -151,16 +154,19 @@ def alike(neighbours: Sequence[Neighbour]) -> list[Neighbour]:
 def _marks(used: Sequence[Neighbour]) -> dict[str, float]:
     """Where the blend's marks lie (m), in ascending order, as in all of its neighbours.
 
-    Of two marks that change places from one neighbour to the next the later named is left out.
+    Of two marks that coincide, or change places from one neighbour to the next, the later named is
+    left out; so is one at an end of the surface: there is nothing between them to stretch.
     """
     chosen: list[str] = []
     for name in used[0].solution.marks:
         if all(name in n.solution.marks for n in used):
             trial = sorted([*chosen, name], key=lambda k: used[0].solution.marks[k])
-            if all(_ascend([n.solution.marks[k] for k in trial]) for n in used):
+            if all(_ascend(n.solution, trial) for n in used):
                 chosen = trial
     return {k: sum(n.weight * n.solution.marks[k] for n in used) for k in chosen}
 
 
-def _ascend(places: Sequence[float]) -> bool:
-    return all(a < b for a, b in pairwise(places))
+def _ascend(solution: Solution, names: Sequence[str]) -> bool:
+    """Whether these marks lie one after the other between the ends of the surface."""
+    end = solution.length / 2
+    return all(a < b for a, b in pairwise([-end, *(solution.marks[k] for k in names), end]))
