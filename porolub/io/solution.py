@@ -26,6 +26,9 @@ from porolub.solve.neighbours import Solution
 from porolub.solve.transfer import Snapshot
 from porolub.together import ALONE, on_each
 
+# what h5py raises for files that are none, end early, or hold something else
+DAMAGED = (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError)
+
 
 def write_solution(path: Path, solution: Solution, comm: Any = ALONE) -> None:
     """Write a solution; each rank gives its block. Collective.
@@ -70,7 +73,7 @@ def read_solution(path: Path, comm: Any = ALONE) -> Solution:
                 data = Snapshot(ticks, rows, scalars, comm.size > 1)
                 edges = tuple(file["edges"][()].tolist())
                 return Solution(data, float(file.attrs["length"]), edges, marks)
-        except (OSError, KeyError, ValueError) as error:
+        except DAMAGED as error:
             raise SceneError(f"{path}: this is no solution to start from ({error}).") from error
 
     solution: Solution = on_each(comm, read)
