@@ -6,6 +6,7 @@ before the work begins, and the results do not depend on who is quickest.
 
 from __future__ import annotations
 
+import logging
 import threading
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
@@ -14,6 +15,7 @@ from typing import Any
 from porolub.errors import PorolubError
 from porolub.study.cases import Case
 
+log = logging.getLogger(__name__)
 Row = Mapping[str, Any]
 
 
@@ -42,7 +44,8 @@ class Work:
 
     ``rows``: of cases done before, by key. ``begun`` and ``note`` are called, one at a time, with
     each case that begins and each row that comes in, and the group; an error of theirs ends the
-    work and is kept in ``problem``.  ``refresh`` renews what is shown.
+    work and is kept in ``problem``, or groups would wait for an answer for ever.  ``refresh``
+    renews what is shown.
     """
 
     def __init__(self, cases: Iterable[Case], rows: Mapping[str, Row],
@@ -56,6 +59,7 @@ class Work:
         self._waiting = {c.index: c for c in sorted(waiting, key=lambda c: c.order)}
         self._children = {parent for c in waiting for parent, _ in c.parents}
         self._begun, self._note, self._refresh = begun, note, refresh
+        self._stuck = False  # whether nothing can begin before a row comes in
         self._lock = threading.Lock()
         self.problem: PorolubError | None = None
 
@@ -73,15 +77,19 @@ class Work:
         """A group has computed this row."""
         with self._lock:
             self._converged[row["case"]] = row["status"] == "converged"
+            self._stuck = False
             self._tell(lambda: self._note(row, group))
 
     def next(self, group: int) -> Task | Wait | End:
         """What a group does next."""
         with self._lock:
-            ready = next((c for c in self._waiting.values() if self._is_ready(c)), None)
             if self.problem is not None or not self._waiting:
                 return End()
+            if self._stuck:
+                return Wait()
+            ready = next((c for c in self._waiting.values() if self._is_ready(c)), None)
             if ready is None:
+                self._stuck = True
                 return Wait()
             del self._waiting[ready.index]
             self._tell(lambda: self._begun(ready, group))
@@ -106,3 +114,7 @@ class Work:
             work()
         except PorolubError as problem:
             self.problem = self.problem or problem
+        except Exception as error:
+            log.exception("the rows could not be kept")
+            self.problem = self.problem or PorolubError(f"{type(error).__name__}: {error}; log.txt "
+                                                        "or stderr says where.")
