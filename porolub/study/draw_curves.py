@@ -30,6 +30,7 @@ from porolub.study.draw_quantities import (
     PRESSURE_MAX,
     Quantity,
     bracketed,
+    plain,
     suited,
 )
 from porolub.study.draw_regimes import band_handles, draw_bands, note_below
@@ -52,6 +53,7 @@ _WIDE = 30.0  # positive values that span more go on a logarithmic axis
 _MOST = 12  # lines; more cannot be told apart
 _FONT = 11
 _SAME = 1e-6
+_LONG = 16  # letters of a category under an axis
 
 
 @dataclass(frozen=True)
@@ -104,9 +106,10 @@ def _along(view: View) -> _Along:
     k = [len(view.axes) - 1, *view.varied, *view.numeric][-1]
     axis, values = view.axes[k], view.along(k)
     if axis.numbers is None:
-        return _Along(k, axis.name, Unit("", 1.0), values, "", axis.texts)
+        texts = tuple(plain(text[:_LONG]) for text in axis.texts)
+        return _Along(k, view.axis_name(k), Unit("", 1.0), values, "", texts)
     unit = suited(axis.unit, values, logarithmic=axis.scale == "log")
-    return _Along(k, axis.name, unit, values / unit.size, axis.scale, ())
+    return _Along(k, view.axis_name(k), unit, values / unit.size, axis.scale, ())
 
 
 def _tells(view: View, along: _Along, pairs: tuple[tuple[Quantity, str], ...]) -> bool:
@@ -178,7 +181,7 @@ def _x_axis(ax: Axes, along: _Along) -> None:
     ax.set_xlim(low - margin, high + margin)
     if not along.scale:
         ax.set_xlim(-0.5, len(along.texts) - 0.5)
-        ax.set_xticks(range(len(along.texts)), [text[:16] for text in along.texts])
+        ax.set_xticks(range(len(along.texts)), along.texts)
     else:
         ax.xaxis.set_major_locator(MaxNLocator(6))
 

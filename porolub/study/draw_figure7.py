@@ -65,7 +65,9 @@ def _friction(view: View, line: Line) -> Figure | None:
     ):
         handles += _curve(ax, view, line, y, colour, style, quantity.name)
     label(ax, y="friction coefficients $μ$, $μ_f$")
-    ratio = positive(view.values(LOAD_RATIO)[line.rows])
+    # without contact it is a quotient by what rounding leaves of zero
+    touching = view.values(FILM_MIN)[line.rows] <= _ZERO
+    ratio = np.where(touching, positive(view.values(LOAD_RATIO)[line.rows]), np.nan)
     if np.isfinite(ratio).any():
         right = ax.twinx()
         tidy(right)
@@ -90,8 +92,7 @@ def _lengths(view: View, line: Line) -> Figure | None:
     if not np.isfinite(all_values).any():
         return None
     unit = view.unit(*quantities, APPROACH, logarithmic=True)
-    figure, ax = _axes(view, line, "Contact, penetration, film and approach",
-                       all_values / unit.size)  # fmt: skip
+    figure, ax = _axes(view, line, "Lengths", all_values / unit.size)
     handles = []
     for quantity, y, colour, style in zip(
         quantities, values, (VERMILLION, GREEN, BLUE), ("-", "--", "-."), strict=True

@@ -76,6 +76,11 @@ def _shown(unit: str) -> str:
     return unit.replace("*", " ")
 
 
+def plain(text: str) -> str:
+    """Return a user's text as figures can take it: a dollar sign begins no formula."""
+    return text.replace("$", r"\$")
+
+
 def bracketed(name: str, unit: Unit) -> str:
     """Return the label of an axis: ``load L [N/m]``."""
     return f"{name} [{unit.name}]" if unit.name else name

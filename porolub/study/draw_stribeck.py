@@ -188,7 +188,7 @@ def _colours(
         norm = (LogNorm if logarithmic else Normalize)(values.min(), values.max())
         scale = ScalarMappable(norm, "viridis")
         bar = figure.colorbar(scale, ax=ax, pad=0.02, aspect=30)
-        bar.set_label(bracketed(axis.name, unit), fontsize=13)
+        bar.set_label(bracketed(view.axis_name(k), unit), fontsize=13)
         bar.ax.tick_params(labelsize=11)
         return [scale.to_rgba(values[line.fixed[k]]) for line in lines], []
     colours = [LINE_COLOURS[n % len(LINE_COLOURS)] for n in range(len(lines))]

@@ -84,7 +84,7 @@ def _side(view: View, k: int) -> tuple[Side, NDArray[np.intp]]:
     numbers = np.asarray(axis.numbers, float)
     unit = suited(axis.unit, numbers, logarithmic=axis.scale == "log")
     ascending = np.argsort(numbers)
-    side = Side(axis.name, unit, numbers[ascending] / unit.size, axis.scale == "log")
+    side = Side(view.axis_name(k), unit, numbers[ascending] / unit.size, axis.scale == "log")
     return side, np.argsort(ascending)[view.positions[:, k]]
 
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from porolub.io.words import Unit
 from porolub.solve.report import Array
-from porolub.study.draw_quantities import FLUID_SHARE, Quantity, suited
+from porolub.study.draw_quantities import FLUID_SHARE, Quantity, plain, suited
 from porolub.study.label import axis_text
 from porolub.study.table import Table, TableAxis
 
@@ -128,11 +128,15 @@ class View:
         """Return what positions on some axes are called: ``speed = 1 rad/s, base = bonded``."""
         return ", ".join(self.value_on(k, place) for k, place in fixed.items())
 
+    def axis_name(self, k: int) -> str:
+        """Return what axis ``k`` is called in figures."""
+        return plain(self.axes[k].name.replace("_", " "))
+
     def value_on(self, k: int, place: int) -> str:
         """Return what a position on axis ``k`` is called."""
         axis = self.axes[k]
         value = axis.texts[place] if axis.numbers is None else float(axis.numbers[place])
-        return f"{axis.name} = {axis_text(value, axis.unit)}"
+        return f"{self.axis_name(k)} = {plain(axis_text(value, axis.unit))}"
 
     def slices(self, kept: list[int]) -> list[View]:
         """One view for each combination of positions on the axes that are not ``kept``."""

@@ -69,6 +69,16 @@ def test_without_contact_there_is_no_axis_for_the_load_ratio() -> None:
     assert "contact length b" not in curves(found["figure7b.png"])
 
 
+def test_rounding_is_no_load_on_the_solid() -> None:
+    cases = [case(load) for load in LOADS]
+    for summary in cases:
+        if summary["load_ratio"] is None:
+            summary["load_ratio"] = 1e33
+    table = made_up([axis("load", "load.force", LOADS, "N/m", "log")], cases)
+    ratio = curves(figures(table)["figure7a.png"])["load ratio $Γ = L_f/L_s$"]
+    assert heights(ratio).max() < 100
+
+
 def test_rounding_is_no_film() -> None:
     cases = [case(load) for load in LOADS]
     for summary in cases:

@@ -95,6 +95,15 @@ def test_one_map_for_each_combination_of_further_axes(caplog: pytest.LogCaptureF
     assert "8 of 20 maps are left out" in caplog.text
 
 
+def test_names_of_the_user_are_no_formulas() -> None:
+    axes = [axis("axis_of $\\alpha", "load.force", (1.0, 10.0, 100.0), "N/m", "log"),
+            categories("paid in $", "solid.base", ("$", "$\\frac", "100 %"))]  # fmt: skip
+    cases = [case(load) for load in (1.0, 10.0, 100.0) for _ in range(3)]
+    assert names(made_up(axes, cases, title="$\\title$")) == ["stribeck.png", "curves.png"]
+    one = categories("paid in $", "solid.base", ("$", "$\\frac", "100 %"))
+    assert names(made_up([one], cases[::3])) == ["stribeck.png", "curves.png"]
+
+
 def test_no_sweep_no_pictures(tmp_path: Path) -> None:
     assert not is_sweep_directory(tmp_path)
     with pytest.raises(SceneError, match="this is no output of a sweep"):
