@@ -130,7 +130,7 @@ def test_some_sweeps_always_start_from_zero(tmp_path: Path, how: str) -> None:
     axes = [FORCE, SPEED] + ([{"key": "time", "values": [TIME]}] if how == "times" else [])
     start = "zero" if how == "zero" else "neighbour"
     cases = cases_along(tmp_path, *axes, base=base, start=start)
-    assert all(case.parents == () for case in cases)
+    assert all(case.scene is not None and case.parents == () for case in cases)
     assert [case.order for case in cases] == list(range(15))
 
 
