@@ -5,7 +5,8 @@
 with the viscosity of the film, the surface speed and the load per width. The paper tells the
 regimes apart by the film (hydrodynamic, elastohydrodynamic) and by the slope of the friction curve
 (mixed, boundary). A slope needs neighbours; so that each case has a regime of its own, the latter
-two are told apart by what the film adds to friction, which falls steeply at the knee of the curve.
+two are told apart by the film's friction coefficient beside the whole one. Along Case 1 by approach
+the border lies where the slope d ln mu / d ln (eta U / L) has fallen to 0.1.
 """
 
 from typing import Any
