@@ -36,8 +36,8 @@ class Side:
     def between(self) -> Array:
         """Return the values and such between them, all in all evenly spaced on paper."""
         even = self.even(self.values)
-        fine = np.union1d(even, np.linspace(even[0], even[-1], _FINE))
-        return 10**fine if self.logarithmic else fine
+        fine: Array = np.union1d(even, np.linspace(even[0], even[-1], _FINE))
+        return np.power(10.0, fine) if self.logarithmic else fine
 
 
 @dataclass(frozen=True)
