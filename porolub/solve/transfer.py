@@ -64,7 +64,7 @@ def _ends(ticks: list[Array]) -> tuple[Index, Index]:
 
 
 def snapshot(model: Model, x: PETSc.Vec) -> Snapshot:
-    """Take up a solution. Collective."""
+    """Take up a solution. Collective. ValueError for a mesh from a file."""
     mesh, dofs = model.mesh, model.dofs
     local = model.system.physical(dofs.to_local(x))
     rows, scalars = {}, {}
@@ -73,8 +73,9 @@ def snapshot(model: Model, x: PETSc.Vec) -> Snapshot:
             scalars[name] = dofs.scalar_value(name, x)
             continue
         mine = mesh.owned[dofs.nodes[name]]
+        places = _places(model, f)[mine]
         ends = _ends([mesh.vertex_ticks[k] for k in _axes(mesh.dim, f)])
-        numbers = lattice.numbers(_places(model, f)[mine], *ends)
+        numbers = lattice.numbers(places, *ends)
         count = int(lattice.count(*ends, f.degree))
         rows[name] = to_blocks(mesh.comm, numbers, dofs.field(name, local)[mine], count)
     return Snapshot(mesh.vertex_ticks, rows, scalars, mesh.comm.size > 1)
