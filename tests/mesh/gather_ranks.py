@@ -1,27 +1,34 @@
-"""Run by mpirun: build a mesh, check what each rank must agree on, save it from rank 0.
+"""Run by mpirun: build meshes, check what the ranks must agree on, save them from rank 0.
 
-Arguments: case name, mesh file, output .npz. Run alone it gives the serial reference.
+Arguments: the directory to write, then mesh files, .msh. Each mesh becomes an .npz there, named as
+the case or the file. On one rank it gives the serial reference.
 """
 
 import sys
+from pathlib import Path
 
 import numpy as np
 from mpi4py import MPI
 
-from porolub.mesh import build_mesh
+from porolub.mesh import Mesh, build_mesh
 from tests.mesh.scenes import scene
 
 
-def main(case: str, path: str, output: str) -> None:
+def main(directory: str, *files: str) -> None:
     cases = {
-        "sector": lambda: scene("sector"),
-        "triangle": lambda: scene("sector", element="triangle"),
-        "barrel": lambda: scene("barrel", 3, crown_radius=0.2),
-        "file": lambda: scene("file", path=path),
-        "body": lambda: scene("file", 3, path=path),
+        "sector": scene("sector"),
+        "triangle": scene("sector", element="triangle"),
+        "barrel": scene("barrel", 3, crown_radius=0.2),
     }
-    comm = MPI.COMM_WORLD
-    mesh = build_mesh(cases[case](), comm, length_scale=1e-3)
+    for path in map(Path, files):
+        dimension = 3 if path.stem.startswith("body") else 2
+        cases[path.stem] = scene("file", dimension, path=str(path))
+    for name, case in cases.items():
+        save(build_mesh(case, MPI.COMM_WORLD, length_scale=1e-3), f"{directory}/{name}.npz")
+
+
+def save(mesh: Mesh, output: str) -> None:
+    comm = mesh.comm
     owned = mesh.global_node[mesh.owned]
     everything = {
         "owned": comm.gather(owned),

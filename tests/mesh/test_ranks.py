@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tests.mesh.scenes import barrel_file, sector_file
+from tests.mpirun import mpirun
 
 SCRIPT = Path(__file__).with_name("gather_ranks.py")
 
@@ -18,37 +19,48 @@ def by_number(values, number):
     return values[first]
 
 
+@pytest.fixture(scope="module")
+def meshes(tmp_path_factory):
+    """The directory of a number of ranks; starting them takes longer than any of the meshes."""
+    files = tmp_path_factory.mktemp("files")
+    paths = []
+    for order in (1, 2):
+        for cubes in (False, True):
+            plane, body = (files / f"{kind} {order} {cubes}.msh" for kind in ("plane", "body"))
+            paths += [sector_file(plane, order=order, quads=cubes)]
+            paths += [barrel_file(body, order=order, hexahedra=cubes)]
+    written = {}
+    for ranks in (1, 2, 4):
+        written[ranks] = tmp_path_factory.mktemp(f"{ranks} ranks")
+        mpirun(written[ranks], ranks, SCRIPT, written[ranks], *paths)
+    return written
+
+
 @pytest.mark.mpi
 @pytest.mark.parametrize("case", ["sector", "triangle", "barrel"])
-def test_same_mesh_on_any_number_of_ranks(run_mpi, tmp_path, case):
-    compare_ranks(run_mpi, tmp_path, case, "none")
+def test_same_mesh_on_any_number_of_ranks(meshes, case):
+    compare_ranks(meshes, case, 3 if case == "barrel" else 2)
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("quads", [False, True])
 @pytest.mark.parametrize("order", [1, 2])
-def test_same_plane_mesh_from_a_file(run_mpi, tmp_path, order, quads):
-    path = sector_file(tmp_path / "a.msh", order=order, quads=quads)
-    compare_ranks(run_mpi, tmp_path, "file", path)
+def test_same_plane_mesh_from_a_file(meshes, order, quads):
+    compare_ranks(meshes, f"plane {order} {quads}", 2)
 
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("hexahedra", [False, True])
 @pytest.mark.parametrize("order", [1, 2])
-def test_same_body_from_a_file(run_mpi, tmp_path, order, hexahedra):
-    path = barrel_file(tmp_path / "a.msh", order=order, hexahedra=hexahedra)
-    compare_ranks(run_mpi, tmp_path, "body", path)
+def test_same_body_from_a_file(meshes, order, hexahedra):
+    compare_ranks(meshes, f"body {order} {hexahedra}", 3)
 
 
-def compare_ranks(run_mpi, tmp_path, case, path):
-    found = {}
-    for ranks in (1, 2, 4):
-        output = tmp_path / f"{ranks}.npz"
-        run_mpi(ranks, SCRIPT, case, path, output)
-        found[ranks] = dict(np.load(output))
+def compare_ranks(meshes, case, dimension):
+    found = {ranks: dict(np.load(directory / f"{case}.npz")) for ranks, directory in meshes.items()}
     one = found[1]
     names = [key for key in one if key.startswith(("facets", "nodes"))]
-    assert len(names) == (12 if case in ("barrel", "body") else 8)
+    assert len(names) == (12 if dimension == 3 else 8)
     for ranks, data in found.items():
         count = len(one["x"])
         np.testing.assert_array_equal(np.sort(data["owned"]), np.arange(count))

@@ -7,6 +7,24 @@ from pathlib import Path
 
 from tests.run.output import JOBS
 
+RUN = "from porolub.cli import main; main()"
+"""The program as each rank of an mpirun starts it."""
+PICTURELESS = """
+import sys
+from types import SimpleNamespace
+
+sys.modules["porolub.io.plots"] = SimpleNamespace(plot_directory=lambda directory: [])
+from porolub.cli import main
+
+main()
+"""
+"""The same without figures: drawing takes longer than a small run, and all other ranks wait."""
+
+
+def drawn_on_two(ranks: int) -> str:
+    """The program for a test that repeats a run on several numbers of ranks: one draws figures."""
+    return RUN if ranks == 2 else PICTURELESS
+
 
 def porolub(
     *arguments: object, cwd: Path, timeout: float = 120.0

@@ -18,7 +18,8 @@ from porolub.run_transient import restart
 from porolub.scene import Scene, load_scene
 from porolub.solve.report import SurfaceMap
 from tests.run.output import Output, run, shipped
-from tests.run.test_ranks import FLOWS, NOT_COMPARED, ROUNDING, RUN
+from tests.run.program import RUN, drawn_on_two
+from tests.run.test_ranks import FLOWS, NOT_COMPARED, ROUNDING
 from tests.run.transient import ROW, same_frames, same_history, signalled
 
 WIDE = 1e-3  # m
@@ -103,8 +104,8 @@ def test_a_crowned_barrel_on_any_number_of_ranks(run_mpi, tmp_path: Path) -> Non
     job = Path(__file__).resolve().parents[2] / "jobs" / "case1.toml"
     found = {}
     for ranks in (1, 2, 4):
-        run_mpi(ranks, RUN, "run", job, *words(*CROWN), "--quiet", "--out", tmp_path / str(ranks),
-                timeout=300)
+        run_mpi(ranks, drawn_on_two(ranks), "run", job, *words(*CROWN), "--quiet", "--out",
+                tmp_path / str(ranks), timeout=300)
         found[ranks] = results(tmp_path / str(ranks))
     summary, fields, surface = found[1]
     assert 0 < summary["contact_width"] < 16e-3

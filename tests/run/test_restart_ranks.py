@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from porolub.run_transient import restart
+from tests.run.program import PICTURELESS, RUN
 from tests.run.transient import CASE2, KINKS, options, run, same_frames, same_history, small
 
 ONE_RANK_IS_SIGNALLED = """
@@ -20,7 +21,6 @@ if MPI.COMM_WORLD.rank == 1:
         main()
 main()
 """
-RUN = "from porolub.cli import main; main()"
 
 
 @pytest.mark.mpi
@@ -40,7 +40,7 @@ def test_the_steps_do_not_depend_on_where_a_run_goes_on(
     shutil.copytree(tmp_path / "two", tmp_path / "one")
     restart(tmp_path / "one", quiet=True)
     shutil.copytree(tmp_path / "two", tmp_path / "four")
-    run_mpi(4, RUN, "restart", "four", "--quiet")
+    run_mpi(4, PICTURELESS, "restart", "four", "--quiet")
     for directory, ranks in (("one", 1), ("four", 4)):
         same_history(expected.directory, tmp_path / directory)
         same_frames(expected.directory, tmp_path / directory)

@@ -15,7 +15,7 @@ from porolub.io.frames import read_frames
 from porolub.io.summary import KEYS
 from porolub.scene import load_scene, scene_from_dict
 from tests.run.output import Output
-from tests.run.program import porolub
+from tests.run.program import RUN, porolub
 from tests.run.test_contract import FILES, TABLES, TEXTS
 from tests.run.transient import (
     BALANCED,
@@ -29,7 +29,6 @@ from tests.run.transient import (
     small,
 )
 
-RUN = "from porolub.cli import main; main()"
 FROM_REST = """
 [geometry]
 shape = "sector"

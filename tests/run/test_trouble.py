@@ -18,7 +18,7 @@ from porolub.run_transient import restart, run_transient
 from porolub.scene import Scene, load_scene
 from porolub.solve.options import set_options
 from tests.run.output import JOBS
-from tests.run.program import porolub
+from tests.run.program import RUN, porolub
 from tests.run.transient import CASE2, options, run, small
 
 CRUSHED = """
@@ -40,7 +40,6 @@ displacement.y.values = ["0 mm", "-0.1 mm", "-1.2 mm"]
 PLACE = r"near x = -?[\d.]+ mm, y = -?[\d.]+ mm"
 SENTENCE = (r"At t = 0\.1 s even a step of 1e-10 s fails: the volume ratio J fell to -.*, "
             rf"{PLACE}; try .* What was computed is in here\.$")
-RUN = "from porolub.cli import main; main()"
 
 
 @pytest.fixture

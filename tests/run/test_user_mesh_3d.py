@@ -9,6 +9,7 @@ import pytest
 from porolub.scene.read import scene_from_dict
 from tests.mesh.scenes import barrel_file
 from tests.run.output import Output, run
+from tests.run.program import drawn_on_two
 from tests.scene.scenes import ROLLING, changed
 
 COUNTS = (50, 3, 1)
@@ -17,8 +18,6 @@ SLAB = {"shape": "barrel", "outer_radius": "100 mm", "thickness": "1 mm", "half_
         "width": "1 mm"}
 LOADS = ("load_fluid", "load_solid", "approach", "contact_length", "friction_coefficient")
 FLOWS = ("inflow_left", "inflow_right", "outflow_right")
-
-RUN = "from porolub.cli import main; main()"
 
 
 def rolled(directory: Path, geometry: dict[str, Any], mesh: dict[str, int]) -> Output:
@@ -70,7 +69,7 @@ def test_tetrahedra_give_the_same_numbers_on_any_number_of_ranks(run_mpi, tmp_pa
     found = {}
     for ranks in (1, 2, 4):
         out = tmp_path / str(ranks)
-        run_mpi(ranks, RUN, "run", scene, "--quiet", "--out", out)
+        run_mpi(ranks, drawn_on_two(ranks), "run", scene, "--quiet", "--out", out)
         found[ranks] = json.loads((out / "summary.json").read_text())
     assert found[1]["contact_area"] > 0
     for key in (*LOADS, *FLOWS, "contact_area", "contact_pressure_max", "pressure_max"):

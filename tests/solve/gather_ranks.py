@@ -1,4 +1,7 @@
-"""Run by mpirun: gather one state and save it from rank 0. Arguments: element, .npz to write."""
+"""Run by mpirun: gather a state on meshes of some elements, save it from rank 0.
+
+Arguments: the directory to write, elements. Each element becomes an .npz.
+"""
 
 import sys
 from dataclasses import fields as names_of
@@ -12,8 +15,12 @@ from tests.solve.models import case1, model_of, vector, waves
 from tests.terms.case1 import BARREL
 
 
-def main(element: str, path: str) -> None:
-    comm = MPI.COMM_WORLD
+def main(directory: str, *elements: str) -> None:
+    for element in elements:
+        save(element, f"{directory}/{element}.npz", MPI.COMM_WORLD)
+
+
+def save(element: str, path: str, comm: MPI.Intracomm) -> None:
     flat = element != "hex"
     scene = case1(14, 5, f"mesh.element={element}") if flat else scene_from_dict(BARREL)
     with model_of(scene, comm) as model:

@@ -1,4 +1,7 @@
-"""Run under mpirun: exchange rows and print what this rank could check, on every rank."""
+"""Run under mpirun: exchange rows, print on rank 0 what all ranks could check.
+
+Arguments: counts of rows.
+"""
 
 import sys
 
@@ -42,4 +45,5 @@ def main(count: int) -> None:
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]))
+    for argument in sys.argv[1:]:
+        main(int(argument))

@@ -173,12 +173,13 @@ def test_circles_and_spheres_are_found_from_a_part_of_them(dim):
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("axis", ["x", "z"])
-def test_all_ranks_find_the_same(run_mpi, tmp_path, axis):
-    path = solid_file(tmp_path / "cap.msh", (6, 1, 6), cap(R, D, 0.05, 5e-3))
-    rows = []
+def test_all_ranks_find_the_same(run_mpi, tmp_path):
+    path, axes = solid_file(tmp_path / "cap.msh", (6, 1, 6), cap(R, D, 0.05, 5e-3)), ("x", "z")
+    found = []
     for ranks in (1, 3):
-        (line,) = [x for x in run_mpi(ranks, RANKS, path, axis).splitlines() if "FOUND" in x]
-        rows.append([float(word) for word in line.split()[1:]])
-    assert rows[0][1] == pytest.approx(100.0, rel=1e-9)
-    np.testing.assert_allclose(rows[1], rows[0], rtol=1e-9, atol=1e-7)
+        said = run_mpi(ranks, RANKS, path, *axes).splitlines()
+        lines = [line.split()[1:] for line in said if "FOUND" in line]
+        found.append([[float(word) for word in line] for line in lines])
+    for axis, one, other in zip(axes, *found, strict=True):
+        assert one[1] == pytest.approx(100.0, rel=1e-9), axis
+        np.testing.assert_allclose(other, one, rtol=1e-9, atol=1e-7, err_msg=axis)
