@@ -1,8 +1,10 @@
 # make run      install what is missing, then compute jobs/case1.toml
-# make test     install what is missing, then run the fast tests (those with mpirun included)
+# make test     install what is missing, then run the fast tests (those with mpirun included) in one
+#               process a core, at most 4; WORKERS=2: in so many, WORKERS=0: in pytest's own
 # make test-all all tests; make lint: ruff and mypy; make bench: assembly against MUMPS
 SHELL := /bin/bash
 PYTHON := .venv/bin/python
+WORKERS ?= auto
 
 # One BLAS thread per rank: more of them only slow each other (and MUMPS) down.
 export OPENBLAS_NUM_THREADS := 1
@@ -18,8 +20,10 @@ endif
 run: install
 	@.venv/bin/porolub run jobs/case1.toml
 
+# A test that hangs where no signal reaches it, in PETSc say, ends its worker, and with it the test.
 test: install
-	@$(PYTHON) -m pytest -m "not slow"
+	@$(PYTHON) -m pytest -m "not slow" -n $(WORKERS) --dist worksteal \
+		-o faulthandler_timeout=420 -o faulthandler_exit_on_timeout=true
 
 test-all: install
 	@$(PYTHON) -m pytest

@@ -1,15 +1,15 @@
-"""What all tests share: one BLAS thread, and `run_mpi` to run code under mpirun."""
+"""What all tests share: one BLAS thread, as many workers as cores, code under mpirun."""
 
 import os
-import signal
-import subprocess
 import sys
-import textwrap
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
+
+from tests.mpirun import mpirun
 
 # a loaded machine is no failure; a commit is judged on the same examples each time
 settings.register_profile("porolub", deadline=None, derandomize=bool(os.environ.get("CI")))
@@ -26,69 +26,33 @@ os.environ.setdefault("MPLBACKEND", "Agg")
 if os.geteuid() == 0:
     os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
 
-ROOT = Path(__file__).resolve().parent.parent
+MOST_WORKERS = 4  # each takes up to 1.5 GB and starts up to six ranks
 RunMPI = Callable[..., str]
 
 
-def _stop_session(process: "subprocess.Popen[str]") -> None:
-    """End mpirun and, if it does not end its ranks, these too (they share its session)."""
-    process.send_signal(signal.SIGTERM)
-    try:
-        process.wait(5)
-    except subprocess.TimeoutExpired:
-        process.kill()
-    for entry in Path("/proc").glob("[0-9]*"):
-        try:
-            if os.getsid(int(entry.name)) == process.pid:
-                os.kill(int(entry.name), signal.SIGKILL)
-        except ProcessLookupError:
-            continue
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_auto_num_workers() -> int:
+    """`-n auto`: a worker for each core this process may use."""
+    return min(len(os.sched_getaffinity(0)), MOST_WORKERS)
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_setupnodes() -> None:
+    """Workers inherit this process's environment, and mpirun fails in one that MPI has changed."""
+    if {"mpi4py.MPI", "petsc4py.PETSc"} & sys.modules.keys():
+        raise pytest.UsageError("a conftest.py imports MPI; let it do so in its fixtures")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files that start ranks come first: they take longest, and at the end workers would wait."""
+    starting = {item.path for item in items if item.get_closest_marker("mpi")}
+    items.sort(key=lambda item: item.path not in starting)
 
 
 @pytest.fixture
 def run_mpi(tmp_path: Path) -> RunMPI:
-    """`run_mpi(n, script_or_code, *args, timeout=120, code=0)` -> what the ranks printed.
-
-    Runs a script (a Path) or code (a string, dedented) on n ranks in `tmp_path` and fails with
-    the end of the output when it takes longer than `timeout` seconds or ends with another exit
-    code than `code`.
-    """
-
-    def run(
-        ranks: int, what: str | Path, *args: object, timeout: float = 120.0, code: int = 0
-    ) -> str:
-        script = what if isinstance(what, Path) else tmp_path / "ranks.py"
-        if isinstance(what, str):
-            script.write_text(textwrap.dedent(what))
-        path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
-        command = ["mpirun", "-n", str(ranks), "--bind-to", "none", sys.executable]
-        command = [*command, str(script), *map(str, args)]
-        # env is given in full: MPI in this process has put variables of its own into the
-        # environment behind Python's back, and mpirun fails when it inherits them
-        process = subprocess.Popen(
-            command,
-            cwd=tmp_path,
-            env={**os.environ, "PYTHONPATH": path},
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            stdin=subprocess.DEVNULL,
-            text=True,
-            start_new_session=True,
-        )
-        try:
-            output, _ = process.communicate(timeout=timeout)
-        except subprocess.TimeoutExpired:
-            _stop_session(process)
-            output, _ = process.communicate()
-            pytest.fail(f"{ranks} ranks took longer than {timeout} s:\n{output[-4000:]}")
-        except BaseException:
-            _stop_session(process)
-            raise
-        if process.returncode != code:
-            pytest.fail(f"exit code {process.returncode} on {ranks} ranks:\n{output[-8000:]}")
-        return output
-
-    return run
+    """`run_mpi(n, script_or_code, *args, timeout=120, code=0)`: `mpirun` in `tmp_path`."""
+    return partial(mpirun, tmp_path)
 
 
 @pytest.fixture(autouse=True)
