@@ -175,6 +175,69 @@ def sweep(
 
 
 @app.command()
+def accuracy(
+    scene: SceneFile,
+    vary: Annotated[
+        str,
+        typer.Option(
+            "--vary",
+            metavar="WHAT",
+            help="Some of mesh, degree, time (order of the scheme) and tolerance, separated by "
+            "commas. If not given: mesh, and time,tolerance of a transient scene.",
+        ),
+    ] = "",
+    levels: Annotated[
+        int, typer.Option("--levels", metavar="N", help="How many meshes or tolerances, 3 to 8.")
+    ] = 4,
+    quantity: Annotated[
+        str,
+        typer.Option(
+            "--quantity",
+            metavar="NAMES",
+            help="Numbers of the summary, separated by commas; of a transient run NAME.mean, "
+            ".min, .max (of the last period) or .end. If not given: friction and loads.",
+        ),
+    ] = "",
+    effects: Annotated[
+        bool,
+        typer.Option("--effects", help="Instead: the scene's effects added one at a time."),
+    ] = False,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", metavar="DIR", help="If not given: results/<scene file name>_accuracy."
+        ),
+    ] = None,
+    overrides: Overrides = None,
+    petsc: Petsc = "",
+    quiet: Quiet = False,
+) -> None:
+    """Show what accuracy costs: error against time on several meshes or tolerances.
+
+    Cases run side by side, one rank each; the same command again goes on where it was stopped.
+    """
+    from porolub.study.sweep_file import is_sweep
+
+    if is_sweep(scene):
+        raise SceneError(f"{scene}: this is a sweep file; porolub accuracy needs a scene.")
+    changes = overrides or []
+    if effects:
+        if vary or quantity:
+            option = "--vary" if vary else "--quantity"
+            raise SceneError(f"{option} has no meaning with --effects.")
+        from porolub.study.effects_study import run_effects
+
+        out_dir = out if out is not None else Path("results") / f"{scene.stem}_effects"
+        raise typer.Exit(run_effects(scene, changes, out_dir, petsc, quiet))
+    from porolub.study.accuracy import run_accuracy
+
+    out_dir = out if out is not None else Path("results") / f"{scene.stem}_accuracy"
+    raise typer.Exit(
+        run_accuracy(scene, changes, out_dir, vary, levels, quantity, petsc, quiet)
+    )
+
+
+@app.command()
 def check(scene: SceneOrSweep, overrides: Overrides = None) -> None:
     """Validate a scene without computing; show its effects, unknowns and conventions.
 

@@ -26,6 +26,7 @@ from porolub.solve.neighbours import Neighbour, solution_of
 from porolub.solve.options import UnusedOption
 from porolub.solve.steady import Outcome, SteadySolver
 from porolub.solve.transient import TransientSolver
+from porolub.study.over_time import over_time
 from porolub.study.regimes import regime, sommerfeld_number
 from porolub.study.work import Row, Task
 
@@ -127,6 +128,7 @@ class Cases:
             raise Interrupted(f"{outcome.message}.")
         with _in_trouble():
             summary = self._finish(scene, outcome, directory)
+        summary["over_time"] = over_time(solver.records, scene.period)
         solver.destroy()
         return summary, "zero"
 
