@@ -27,7 +27,7 @@ from porolub.solve.transfer import Snapshot
 from porolub.together import ALONE, on_each
 
 # what h5py raises for files that are none, end early, or hold something else
-DAMAGED = (OSError, KeyError, ValueError, TypeError, AttributeError, RuntimeError)
+DAMAGED = (OSError, LookupError, ValueError, TypeError, AttributeError, RuntimeError)
 
 
 def write_solution(path: Path, solution: Solution, comm: Any = ALONE) -> None:
