@@ -232,9 +232,7 @@ def accuracy(
     from porolub.study.accuracy import run_accuracy
 
     out_dir = out if out is not None else Path("results") / f"{scene.stem}_accuracy"
-    raise typer.Exit(
-        run_accuracy(scene, changes, out_dir, vary, levels, quantity, petsc, quiet)
-    )
+    raise typer.Exit(run_accuracy(scene, changes, out_dir, vary, levels, quantity, petsc, quiet))
 
 
 @app.command()
