@@ -36,7 +36,7 @@ def test_it_shows_title_base_changes_and_axes(tmp_path: Path) -> None:
     bases = {"key": "solid.base", "values": ["sliding", "bonded"]}
     text = shown(tmp_path, FORCE, viscosity, bases, title="Loads", set=["mesh.grading=contact"])
     assert text.startswith("Loads\n")
-    assert "scene.toml" in text
+    assert "scene.toml" in text.replace("\n", "")  # a long path goes on in the next line
     assert "changed by: mesh.grading=contact" in text
     assert row(text, "force") == "force load.force 9, linear 1 kN/m, 1.25 kN/m,"
     assert "3 kN/m" in text
