@@ -68,15 +68,17 @@ class Cases:
             "axes": case.axes, "values": case.values, "sommerfeld_number": None, "regime": "",
             "start": "zero", "wall": 0.0, "summary": {},
         }
-        self.interrupt.raise_if_asked(self.comm)
         try:
+            self.interrupt.raise_if_asked(self.comm)
             with _together(self.comm):
                 summary, row["start"] = self._solve(task)
             row |= {"status": summary["status"], "message": summary["message"]}
             if summary["status"] == "converged":
                 row |= {"summary": summary, "regime": regime(summary),
                         "sommerfeld_number": sommerfeld_number(case.scene, summary)}
-        except (Interrupted, UnusedOption, Trouble):
+        except Interrupted as error:  # a case has no state of its own to keep
+            raise Interrupted(f"{self.interrupt.asked(self.comm)}.") from error
+        except (UnusedOption, Trouble):
             raise
         except SceneError as error:  # what only the mesh or the model could know
             row |= {"status": "refused", "message": str(error)}
