@@ -16,7 +16,7 @@ import typer
 from rich.console import Console
 from typer.core import TyperGroup
 
-from porolub.errors import PorolubError, SceneError
+from porolub.errors import PorolubError, SceneError, SolveError
 from porolub.versions import versions
 
 PATIENCE = 10.0  # s that a rank in error waits for the others to get there too
@@ -171,7 +171,8 @@ def sweep(
 
     loaded = load_sweep(file, overrides or ())
     out_dir = out if out is not None else Path("results") / file.stem
-    raise typer.Exit(run_sweep(loaded, out_dir, part, retry_failed, petsc, quiet))
+    if run_sweep(loaded, out_dir, part, retry_failed, petsc, quiet) != 0:
+        raise SolveError(f"{out_dir}: no case converged; table.csv says what each one met with.")
 
 
 @app.command()

@@ -11,7 +11,7 @@ from typing import Any
 
 from mpi4py import MPI
 
-from porolub.errors import Interrupted, PorolubError, SceneError
+from porolub.errors import Interrupted, PorolubError, SceneError, SolveError
 from porolub.interrupt import Interrupt
 from porolub.io.atomic import replacing, reported
 from porolub.io.log import close_logging, setup_logging
@@ -24,7 +24,7 @@ from porolub.study.outcome import one_line
 from porolub.study.parts import part_of, read_part
 from porolub.study.progress import SweepProgress
 from porolub.study.queue import Queue
-from porolub.study.run_case import STATES, Cases
+from porolub.study.run_case import STATES, Cases, Trouble
 from porolub.study.sweep_file import write_resolved_sweep
 from porolub.study.sweep_plots import plot_sweep
 from porolub.study.table import write_table
@@ -170,19 +170,22 @@ class Ledger:
 
         Raises the problem that ended the work before its end.
         """
-        if problem is not None:
-            self.progress.close()
-            if isinstance(problem, Interrupted):
+        self.progress.close()
+        try:
+            if problem is None or isinstance(problem, Interrupted):
                 self._write_table()
-                raise Interrupted(f"{one_line(problem)} {len(self.rows)} of {len(self.cases)} "
-                                  "cases are done; the same command goes on with the others.")
-            raise problem
-        self._write_table()
-        rows = list(self.rows.values())
-        self.progress.summary(rows, self.directory)
-        converged = sum(row["status"] == "converged" for row in rows)
-        if converged:
-            plot_sweep(self.directory)
+            if problem is not None:
+                raise problem
+            rows = list(self.rows.values())
+            self.progress.summary(rows, self.directory)
+            converged = any(row["status"] == "converged" for row in rows)
+            if converged:
+                plot_sweep(self.directory)
+        except (Interrupted, SolveError, Trouble) as error:
+            if "the same command" in str(error):
+                raise
+            raise type(error)(f"{one_line(error)} {len(self.rows)} of {len(self.cases)} cases are "
+                              "done; the same command goes on from there.") from error
         if not any(row["status"] == "failed" for row in rows):  # a retry would start from them
             shutil.rmtree(self.directory / STATES, ignore_errors=True)
         return 0 if converged or not rows else 3
