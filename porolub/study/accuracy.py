@@ -105,9 +105,7 @@ def run_accuracy(
     return code
 
 
-def _sweep(
-    scene: Any, path: Path, overrides: Sequence[str], settings: Sequence[Setting]
-) -> Sweep:
+def _sweep(scene: Any, path: Path, overrides: Sequence[str], settings: Sequence[Setting]) -> Sweep:
     base = scene.resolved()
     if scene.time is not None:  # all runs end at the same time, and pictures are not what is timed
         base["time"] |= {"until": "end", "frames": 0}

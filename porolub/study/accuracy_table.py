@@ -151,7 +151,7 @@ def advice_lines(study: Study) -> Iterator[str]:
 def _advice(study: Study, advice: Advice) -> Iterator[str]:
     target = f"{100 * advice.target:g} %"
     if advice.trial is None:
-        least = "" if advice.error is None else f"; the least error is {percent(advice.error)}"
+        least = "" if advice.error is None else f"; the least that is sure is {percent(advice.error)}"
         yield f"  {target:>6}: not reached{least}"
         return
     trial: Trial = study.trials[advice.trial]

@@ -46,8 +46,7 @@ class Cost:
 
 
 def costs(names: Sequence[str], rows: Sequence[Mapping[str, Any] | None]) -> list[Cost]:
-    """Return the costs of the scenes of these names, from their rows of the journal; None: refused.
-    """
+    """Return the costs of scenes, from their names and rows of the journal; None: refused."""
     return [_cost(name, row) for name, row in zip(names, rows, strict=True)]
 
 
