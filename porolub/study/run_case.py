@@ -26,13 +26,14 @@ from porolub.solve.neighbours import Neighbour, solution_of
 from porolub.solve.options import UnusedOption
 from porolub.solve.steady import Outcome, SteadySolver
 from porolub.solve.transient import TransientSolver
+from porolub.study.case_directories import case_directory, claim
+from porolub.study.outcome import in_words
 from porolub.study.over_time import over_time
 from porolub.study.regimes import regime, sommerfeld_number
-from porolub.study.work import Row, Task
+from porolub.study.work import Row, Starts, Task
 
 log = logging.getLogger(__name__)
 STATES = "states"
-RESULTS = "cases"
 PATIENCE = 10.0  # s that a rank in error waits for the others of its group to get there too
 
 
@@ -66,12 +67,13 @@ class Cases:
         row: dict[str, Any] = {
             "key": case.key, "case": case.index, "status": "failed", "message": "",
             "axes": case.axes, "values": case.values, "sommerfeld_number": None, "regime": "",
-            "start": "zero", "wall": 0.0, "summary": {},
+            "start": "zero", "starts": [], "wall": 0.0, "summary": {},
         }
         try:
             self.interrupt.raise_if_asked(self.comm)
             with _together(self.comm):
-                summary, row["start"] = self._solve(task)
+                summary, starts = self._solve(task)
+            row |= {"start": in_words([i for i, *_ in starts]), "starts": [k for _, k, _ in starts]}
             row |= {"status": summary["status"], "message": summary["message"]}
             if summary["status"] == "converged":
                 row |= {"summary": summary, "regime": regime(summary),
@@ -99,11 +101,14 @@ class Cases:
     def _state(self, key: str) -> Path:
         return self.directory / STATES / f"{key}.h5"
 
-    def _solve(self, task: Task) -> tuple[dict[str, Any], str]:
-        """Summary of a scene and what it was found from; files are written, PETSc's memory freed.
-        """
+    def _solve(self, task: Task) -> tuple[dict[str, Any], Starts]:
+        """Summary of a scene and what it was found from, if not zero; files are written, PETSc's
+        memory freed."""
         scene: Any = task.case.scene
-        comm, directory = self.comm, self.directory / RESULTS / f"{task.case.index:04d}"
+        comm, directory = self.comm, case_directory(self.directory, task.case)
+        if self.results:
+            with _in_trouble():
+                claim(directory, task.case, comm)
         if scene.time is None:
             steady = SteadySolver(scene, comm, user_options=self.user_options,
                                   stop=self.interrupt.raise_if_asked,
@@ -115,7 +120,7 @@ class Cases:
                     state = solution_of(outcome.model, outcome.x)
                     write_solution(self._state(task.case.key), state, comm)
             outcome.destroy()
-            return summary, _in_words(task) if steady.warm else "zero"
+            return summary, task.starts if steady.warm else ()
         if self.results:
             with _in_trouble():
                 recorder = Recorder(directory, scene, comm, Progress("quiet"),
@@ -132,7 +137,7 @@ class Cases:
             summary = self._finish(scene, outcome, directory)
         summary["over_time"] = over_time(solver.records, scene.period)
         solver.destroy()
-        return summary, "zero"
+        return summary, ()
 
     def _finish(self, scene: Any, outcome: Outcome, directory: Path) -> dict[str, Any]:
         report = make_report(scene, outcome)
@@ -166,11 +171,6 @@ def _together(comm: Any) -> Iterator[None]:
                 MPI.COMM_WORLD.Abort(1)
             time.sleep(0.01)
         raise
-
-
-def _in_words(task: Task) -> str:
-    """What a case was started from: "case 3" or "cases 3, 7"."""
-    return f"case{'s' * (len(task.starts) > 1)} {', '.join(str(i) for i, *_ in task.starts)}"
 
 
 def _failure(error: Exception) -> str:
