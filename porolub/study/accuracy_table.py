@@ -26,8 +26,7 @@ _BATCH = 110  # columns of a batch log
 
 def print_accuracy(console: Console, study: Study, directory: Path) -> None:
     """Print a table for each quantity, then the cheapest settings."""
-    if not console.is_terminal:  # nobody's window is too narrow
-        console.width = max(console.width, _BATCH)
+    widen(console)
     for found in study.found:
         console.print()
         console.print(accuracy_table(study, found))
@@ -38,6 +37,12 @@ def print_accuracy(console: Console, study: Study, directory: Path) -> None:
         console.print(Text(line), soft_wrap=True)
     console.print()
     console.print(Text(f"Results in {directory}"), soft_wrap=True)
+
+
+def widen(console: Console) -> None:
+    """Let tables be wider than 80 columns where they do not go to a terminal."""
+    if not console.is_terminal:
+        console.width = max(console.width, _BATCH)
 
 
 def accuracy_table(study: Study, found: Measured) -> Table:
@@ -151,8 +156,10 @@ def advice_lines(study: Study) -> Iterator[str]:
 def _advice(study: Study, advice: Advice) -> Iterator[str]:
     target = f"{100 * advice.target:g} %"
     if advice.trial is None:
-        least = "" if advice.error is None else f"; the least that is sure is {percent(advice.error)}"
-        yield f"  {target:>6}: not reached{least}"
+        least = "nothing is sure"
+        if advice.error is not None:
+            least = f"the least that is sure is {percent(advice.error)}"
+        yield f"  {target:>6}: not reached; {least}"
         return
     trial: Trial = study.trials[advice.trial]
     assert advice.error is not None

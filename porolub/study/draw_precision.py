@@ -40,7 +40,9 @@ def draw_precision(study: Study) -> Figure:
         for row, (name, cost) in enumerate(costs):
             ax = grid[row, column]
             _panel(ax, study.trials, strategies, cost, found)
-            label(ax, name, _error_name(found) if row == 0 else "error")
+            label(ax, name, f"error [{'%' if found.relative else 'SI'}]")
+            if row == 0:
+                ax.set_title(_name(found), fontsize=13)
     heading(figure, f"What accuracy costs ({study.title})")
     handles: list[Any] = [
         Line2D([], [], color=_colour(n), marker=_marker(n), lw=1.5, ms=7, label=name)
@@ -67,8 +69,8 @@ def _panel(ax: Axes, trials: Sequence[Trial], strategies: Sequence[str], cost: F
     tidy(ax)
     ax.spines["right"].set_visible(False)
     percents = 100.0 if found.relative else 1.0
-    errors = positive(found.errors * percents)
-    floor = found.uncertain * percents
+    floor = found.uncertain * percents if np.isfinite(found.uncertain) else 0.0
+    errors = positive(np.maximum(found.errors * percents, floor))  # less is not known
     drawn = np.isfinite(errors) & np.isfinite(positive(cost))
     for n, strategy in enumerate(strategies):
         mine = drawn & np.array([t.setting.strategy == strategy for t in trials])
@@ -76,19 +78,24 @@ def _panel(ax: Axes, trials: Sequence[Trial], strategies: Sequence[str], cost: F
     x, y = log_limits(cost[drawn]), log_limits(errors[drawn])
     ax.set(xscale="log", yscale="log", xlim=x, ylim=y)
     figures(ax.xaxis, x)
-    if x[1] > 10 * x[0]:  # there is room for few
-        ax.xaxis.set_major_locator(LogLocator(subs=(1.0, 3.0) if x[1] < 1000 * x[0] else (1.0,)))
+    ax.xaxis.set_major_locator(LogLocator(subs=_few(x[1] / x[0])))
     figures(ax.yaxis, y)
     ax.grid(True, which="major", color="#E0E0E0", lw=0.6, zorder=0)
-    if y[0] < floor < np.inf:
+    if y[0] < floor:
         ax.axhspan(y[0], min(floor, y[1]), color=CONTACT_ZONE, lw=0, zorder=-2)
 
 
-def _error_name(found: Measured) -> str:
+def _few(ratio: float) -> tuple[float, ...]:
+    """Figures of a decade there is room for on a narrow axis whose ends have this ratio."""
+    if ratio < 4:
+        return (1.0, 1.5, 2.0, 3.0, 5.0, 7.0)
+    return (1.0, 2.0, 5.0) if ratio < 20 else (1.0, 3.0) if ratio < 1000 else (1.0,)
+
+
+def _name(found: Measured) -> str:
     name, _, which = found.quantity.partition(".")
     words = _NAMES.get(name, name.replace("_", " "))
-    words = f"{words}, {which}" if which else words
-    return f"error of {words} [%]" if found.relative else f"error of {words} [SI]"
+    return f"{words}, {which}" if which else words
 
 
 def _colour(n: int) -> str:

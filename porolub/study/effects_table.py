@@ -16,6 +16,7 @@ from rich.text import Text
 from porolub.io.atomic import write_text
 from porolub.io.summary import number
 from porolub.io.words import seconds
+from porolub.study.accuracy_table import widen
 
 CSV = "effects.csv"
 _MS = 1e3
@@ -66,6 +67,7 @@ def _cost(name: str, row: Mapping[str, Any] | None) -> Cost:
 
 def print_effects(console: Console, found: Sequence[Cost], side_by_side: int, out: Path) -> None:
     """Print the table and what its times are."""
+    widen(console)
     console.print()
     console.print(effects_table(found))
     how = "at a time" if side_by_side == 1 else "side by side"

@@ -124,6 +124,9 @@ def test_the_figure_has_a_line_for_each_strategy() -> None:
     uniform, graded = lines_of(figure, 0)
     assert len(uniform) == 3  # the failed run is left out
     np.testing.assert_allclose(graded[:, 0], [2, 8, 32, 128])
-    np.testing.assert_allclose(uniform[:, 1], 100 * made_up.found[0].errors[[0, 2, 3]])
+    found = made_up.found[0]
+    np.testing.assert_allclose(uniform[:, 1], 100 * found.errors[[0, 2, 3]])
+    assert graded[:, 1].min() >= 100 * found.uncertain  # less is not known
+    assert [ax.get_title() for ax in figure.axes[:2]] == ["friction coefficient", "fluid load"]
     over_unknowns = lines_of(figure, 2)[1]
     np.testing.assert_allclose(over_unknowns[:, 0], 1e4 * 4.0 ** np.arange(4))
