@@ -46,3 +46,10 @@ def troubles(rows: Sequence[Row], units: Mapping[str, str]) -> list[tuple[str, s
 def one_line(message: object) -> str:
     """Return a message without line ends."""
     return " ".join(str(message).split())
+
+
+def in_words(starts: Sequence[int | None]) -> str:
+    """Return what a case was started from: "zero", "case 3" or "cases 3, 7"; a "?" is a case that
+    the sweep has no more."""
+    numbers = ", ".join("?" if number is None else str(number) for number in starts)
+    return f"case{'s' * (len(starts) > 1)} {numbers}" if starts else "zero"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import shutil
 import time
+from collections.abc import Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
@@ -16,11 +17,12 @@ from porolub.interrupt import Interrupt
 from porolub.io.atomic import replacing, reported
 from porolub.io.log import close_logging, setup_logging
 from porolub.solve.options import forget_options, set_options
+from porolub.study.case_directories import arrange, with_results
 from porolub.study.cases import Case, cases_of
 from porolub.study.definition import Sweep
 from porolub.study.journal import JOURNAL, Journal, rows_of
 from porolub.study.lock import Lock
-from porolub.study.outcome import one_line
+from porolub.study.outcome import in_words, one_line
 from porolub.study.parts import part_of, read_part
 from porolub.study.progress import SweepProgress
 from porolub.study.queue import Queue
@@ -111,6 +113,7 @@ class Ledger:
     def __init__(self, sweep: Sweep, directory: Path, quiet: bool) -> None:
         self.sweep, self.directory, self._quiet = sweep, directory, quiet
         self.cases: list[Case] = []
+        self.numbers: dict[str, int] = {}  # of all cases by key, be they of another part
         self.rows: dict[str, Row] = {}
         self.journal = Journal(directory / JOURNAL)
         self.progress = SweepProgress(0, 1, quiet=True)
@@ -119,6 +122,7 @@ class Ledger:
     def find_cases(self, part: str) -> None:
         """Raises SceneError for keys that no scene knows."""
         self.cases = cases_of(self.sweep)
+        self.numbers = {case.key: case.index for case in self.cases}
         if part:
             self.cases = part_of(self.cases, *read_part(part))
 
@@ -130,11 +134,18 @@ class Ledger:
             with replacing(self.directory / RESOLVED) as (temporary,):
                 write_resolved_sweep(temporary, self.sweep)
             (self.directory / STATES).mkdir(exist_ok=True)
+        if retry:
+            known = {key: row for key, row in known.items() if row["status"] == "converged"}
+        if self.sweep.keep == "results":
+            arrange(self.directory, self.cases)
+            there = with_results(whole)
+            known = {key: row for key, row in known.items()
+                     if key in there or row["status"] != "converged"}
         for case in self.cases:
             if case.scene is None:
                 self.rows[case.key] = _refused(case)
-            elif case.key in known and not (retry and known[case.key]["status"] != "converged"):
-                self.rows[case.key] = {**known[case.key], "case": case.index, "axes": case.axes}
+            elif case.key in known:
+                self.rows[case.key] = _renumbered(known[case.key], case, self.numbers)
         units = {axis.name: axis.unit for axis in self.sweep.axes}
         self.progress = SweepProgress(len(self.cases), groups, len(self.rows), self._quiet,
                                       units=units)
@@ -191,8 +202,14 @@ class Ledger:
         return 0 if converged or not rows else 3
 
 
+def _renumbered(row: Row, case: Case, numbers: Mapping[str, int]) -> Row:
+    """A row of before, with the numbers that cases have since points were added or taken away."""
+    start = in_words([numbers.get(key) for key in row.get("starts", ())])
+    return {**row, "case": case.index, "axes": case.axes, "start": start}
+
+
 def _refused(case: Case) -> Row:
     """The row of a case that is no scene."""
     return {"key": case.key, "case": case.index, "status": "refused", "message": case.refusal,
             "axes": case.axes, "values": case.values, "sommerfeld_number": None, "regime": "",
-            "start": "", "wall": 0.0, "summary": {}}
+            "start": "", "starts": [], "wall": 0.0, "summary": {}}

@@ -17,15 +17,16 @@ from porolub.study.cases import Case
 
 log = logging.getLogger(__name__)
 Row = Mapping[str, Any]
+Starts = tuple[tuple[int, str, float], ...]
+"""Number, key and weight of the cases another starts from."""
 
 
 @dataclass(frozen=True)
 class Task:
-    """A case to compute: starts, the (case, its key, weight) it starts from; whether others will
-    start from it."""
+    """A case to compute, what it starts from, and whether others will start from it."""
 
     case: Case
-    starts: tuple[tuple[int, str, float], ...]
+    starts: Starts
     wanted: bool
 
 
@@ -103,7 +104,7 @@ class Work:
     def _is_ready(self, case: Case) -> bool:
         return all(parent in self._converged for parent, _ in case.parents)
 
-    def _starts(self, case: Case) -> tuple[tuple[int, str, float], ...]:
+    def _starts(self, case: Case) -> Starts:
         """Its parents that converged, their weights made to sum to 1."""
         found = [(i, self._cases[i].key, w) for i, w in case.parents if self._converged[i]]
         total = sum(w for *_, w in found)

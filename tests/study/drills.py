@@ -84,5 +84,5 @@ def same_table(found: Table, expected: Table, but: tuple[str, ...] = ()) -> None
 
 def no_remains(directory: Path) -> None:
     """Assert that nothing is left of files that were being written, nor start states."""
-    assert {path.name for path in directory.rglob(".*")} <= {".lock"}
+    assert {path.name for path in directory.rglob(".*")} <= {".lock", ".case"}
     assert not (directory / "states").exists()

@@ -97,3 +97,14 @@ def test_more_points_on_an_axis_are_the_only_ones_computed(tmp_path: Path) -> No
     assert sweep(sweep_file(tmp_path, two, few), here).exit_code == 0
     assert journal(here) == rows
     assert read_table(here).columns["force"].tolist() == [300.0, 2000.0] * 2
+
+
+def test_what_a_case_started_from_is_told_by_the_numbers_of_now(tmp_path: Path) -> None:
+    def starts(*given: int) -> list[str]:
+        axis = {"key": "load.force", "values": [f"{f} N/m" for f in given]}
+        assert sweep(sweep_file(tmp_path, axis), tmp_path / "here").exit_code == 0
+        return list(read_table(tmp_path / "here").columns["start"])
+
+    assert starts(300, 1000, 2000) == ["zero", "cases 0, 2", "zero"]
+    assert starts(200, 300, 1000, 2000)[1:] == ["zero", "cases 1, 3", "zero"]
+    assert starts(1000, 2000) == ["cases ?, 1", "zero"]
