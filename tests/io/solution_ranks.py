@@ -1,6 +1,6 @@
 """Run by mpirun: write a made-up state from this many ranks, read those there are, blend them.
 
-Arguments: a directory for files named after the ranks that wrote them; anything to read only.
+Argument: a directory for files named after the number of ranks that wrote them.
 """
 
 import sys
@@ -16,15 +16,14 @@ from tests.solve.models import case1, model_of, vector, waves
 COMM = MPI.COMM_WORLD
 
 
-def main(directory: Path, write: bool) -> None:
+def main(directory: Path) -> None:
     with model_of(case1(16, 3), COMM) as model:
         x = vector(model, waves(model.dofs), conditions=True)
-        if write:
-            made = solution_of(model, x)
-            write_solution(directory / f"{COMM.size}.h5", made, COMM)
-            again = read_solution(directory / f"{COMM.size}.h5", COMM)
-            for name, rows in made.data.rows.items():
-                np.testing.assert_array_equal(again.data.rows[name], rows)
+        made = solution_of(model, x)
+        write_solution(directory / f"{COMM.size}.h5", made, COMM)
+        again = read_solution(directory / f"{COMM.size}.h5", COMM)
+        for name, rows in made.data.rows.items():
+            np.testing.assert_array_equal(again.data.rows[name], rows)
         for path in sorted(directory.glob("?.h5")):
             found = read_solution(path, COMM)
             assert found.data.shared == (COMM.size > 1)
@@ -35,4 +34,4 @@ def main(directory: Path, write: bool) -> None:
         print("all alike", flush=True)
 
 
-main(Path(sys.argv[1]), len(sys.argv) == 2)
+main(Path(sys.argv[1]))

@@ -120,11 +120,9 @@ def test_where_it_cannot_be_written_the_scene_is_not_to_blame(tmp_path: Path) ->
 
 @pytest.mark.mpi
 def test_any_number_of_ranks_reads_what_any_other_wrote(run_mpi, tmp_path: Path) -> None:
-    """Each run reads what the ones before it wrote, and all have written the same bytes."""
+    """Each run reads what it and those before it wrote; all have written the same bytes."""
     for ranks in (1, 2, 4):
-        run_mpi(ranks, SCRIPT, tmp_path)
-    assert "all alike" in run_mpi(1, SCRIPT, tmp_path, "read only")
-    assert "all alike" in run_mpi(2, SCRIPT, tmp_path, "read only")
+        assert "all alike" in run_mpi(ranks, SCRIPT, tmp_path)
     files = sorted(tmp_path.glob("?.h5"))
     assert [path.stem for path in files] == ["1", "2", "4"]
     assert len({path.read_bytes() for path in files}) == 1

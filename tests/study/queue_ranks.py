@@ -1,12 +1,13 @@
 """Run by mpirun: made-up cases of random length through the queue. Argument: what is to happen.
 
-What each rank has done is printed as JSON, in one line a rank.
+What a rank has done is in rank-N.json of the directory it was started in.
 """
 
 import json
 import random
 import sys
 import time
+from pathlib import Path
 
 from mpi4py import MPI
 
@@ -48,8 +49,9 @@ def main(what: str) -> None:
     except ZeroDivisionError as error:
         ended = str(error)
     problem = str(work.problem) if work and work.problem else ""
-    print(json.dumps({"rank": COMM.rank, "mine": mine, "begun": begun, "noted": noted,
-                      "problem": problem, "ended": ended}), flush=True)  # fmt: skip
+    said = {"rank": COMM.rank, "mine": mine, "begun": begun, "noted": noted, "problem": problem,
+            "ended": ended}  # fmt: skip
+    Path(f"rank-{COMM.rank}.json").write_text(json.dumps(said))
 
 
 def compute(queue: Queue, what: str, mine: list[int]) -> None:

@@ -18,12 +18,10 @@ CASES = grid([float(k) for k in range(8)], [float(k) for k in range(5)])
 ALL = {case.index for case in CASES}
 
 
-def ranks(run_mpi, count: int, *what: str) -> list[dict[str, Any]]:
+def ranks(run_mpi, directory: Path, count: int, *what: str) -> list[dict[str, Any]]:
     """What each rank has to say, in their order."""
-    output = run_mpi(count, SCRIPT, *what, timeout=AT_MOST)
-    said = [json.loads(line) for line in output.splitlines() if line.startswith("{")]
-    assert len(said) == count, output
-    return sorted(said, key=lambda one: one["rank"])
+    run_mpi(count, SCRIPT, *what, timeout=AT_MOST)
+    return [json.loads((directory / f"rank-{k}.json").read_text()) for k in range(count)]
 
 
 def assert_once(said: list[dict[str, Any]]) -> None:
@@ -39,8 +37,10 @@ def assert_once(said: list[dict[str, Any]]) -> None:
 
 @pytest.mark.mpi
 @pytest.mark.parametrize("count", [2, 3])
-def test_each_case_is_done_once_and_all_groups_have_their_share(run_mpi, count: int) -> None:
-    said = ranks(run_mpi, count, "all")
+def test_each_case_is_done_once_and_all_groups_have_their_share(
+    run_mpi, tmp_path: Path, count: int
+) -> None:
+    said = ranks(run_mpi, tmp_path, count, "all")
     assert_once(said)
     assert all(dict(map(tuple, said[0]["noted"]))[i] == one["rank"]
                for one in said for i in one["mine"])  # fmt: skip
@@ -49,8 +49,8 @@ def test_each_case_is_done_once_and_all_groups_have_their_share(run_mpi, count: 
 
 
 @pytest.mark.mpi
-def test_groups_of_two_ranks_and_one_that_is_left_over(run_mpi) -> None:
-    said = ranks(run_mpi, 5, "all", "pairs")
+def test_groups_of_two_ranks_and_one_that_is_left_over(run_mpi, tmp_path: Path) -> None:
+    said = ranks(run_mpi, tmp_path, 5, "all", "pairs")
     assert {index for one in said for index in one["mine"]} == ALL
     assert sum(len(one["mine"]) for one in said) == len(ALL)
     assert [one["rank"] for one in said if one["mine"]] == [0, 2]
@@ -59,9 +59,9 @@ def test_groups_of_two_ranks_and_one_that_is_left_over(run_mpi) -> None:
 
 @pytest.mark.mpi
 @pytest.mark.parametrize(("count", "group"), [(2, 0), (3, 2)])
-def test_any_group_can_end_the_work_of_all(run_mpi, count: int, group: int) -> None:
+def test_any_group_can_end_the_work_of_all(run_mpi, tmp_path: Path, count: int, group: int) -> None:
     """Cases under way elsewhere are finished and kept."""
-    said = ranks(run_mpi, count, f"stop from {group}")
+    said = ranks(run_mpi, tmp_path, count, f"stop from {group}")
     assert said[0]["problem"] == f"asked by group {group}"
     assert len(said[group]["mine"]) == 3
     done = sorted(index for one in said for index in one["mine"])
@@ -75,17 +75,19 @@ def test_any_group_can_end_the_work_of_all(run_mpi, count: int, group: int) -> N
     ("what", "problem"),
     [("disk full", "journal.jsonl: No space left"), ("defect", "ZeroDivisionError: division")],
 )
-def test_a_ledger_that_cannot_be_kept_ends_the_work(run_mpi, what: str, problem: str) -> None:
+def test_a_ledger_that_cannot_be_kept_ends_the_work(
+    run_mpi, tmp_path: Path, what: str, problem: str
+) -> None:
     """Also where it is the thread that answers the others who finds out."""
-    said = ranks(run_mpi, 3, what)
+    said = ranks(run_mpi, tmp_path, 3, what)
     assert said[0]["problem"].startswith(problem)
     assert len(said[0]["noted"]) == 5
     assert len(said[0]["begun"]) <= 5 + 3
 
 
 @pytest.mark.mpi
-def test_an_exception_on_rank_0_leaves_nobody_waiting(run_mpi) -> None:
-    said = ranks(run_mpi, 3, "exception")
+def test_an_exception_on_rank_0_leaves_nobody_waiting(run_mpi, tmp_path: Path) -> None:
+    said = ranks(run_mpi, tmp_path, 3, "exception")
     assert said[0]["ended"] == "on rank 0"
     assert said[0]["problem"] == "ended by ZeroDivisionError on rank 0"
     assert [one["ended"] for one in said[1:]] == ["", ""]
