@@ -18,8 +18,9 @@ Floats = NDArray[np.float64]
 ORDERS = (0.3, 8.0)
 """Orders that are believed, unless told: below, the limit would lie far beyond all values; above,
 it looks the same where two values agree by accident."""
-SAFETY = 1.25
-"""Roache's factor, by which the distance of limit and last value is taken larger."""
+SAFETY, UNCONFIRMED = 1.25, 3.0
+"""Roache's factors, by which the distance of limit and last value is taken larger: in general, and
+where the levels before have no order."""
 OF_CORRECTION = 0.1
 """What the limit is at least uncertain by, of its distance from the last value."""
 
@@ -90,10 +91,14 @@ def extrapolated(
     limit = _limit(h, v, order)
     correction = abs(limit - last)
     uncertain = SAFETY * correction
-    before = observed_order(h[-4:-1], v[-4:-1], noise, orders) if len(v) > 3 else None
-    if before is not None:
-        change = abs(limit - _limit(h[:-1], v[:-1], before))
-        uncertain = min(uncertain, max(change, OF_CORRECTION * correction))
+    if len(v) > 3:
+        before = observed_order(h[-4:-1], v[-4:-1], noise, orders)
+        if before is None:
+            uncertain = UNCONFIRMED * correction
+        else:
+            change = abs(limit - _limit(h[:-1], v[:-1], before))
+            uncertain = max(change, OF_CORRECTION * correction)
+    uncertain = min(uncertain, max(float(np.ptp(v[-3:])), correction))
     return Extrapolation(limit, max(uncertain, floor), order)
 
 

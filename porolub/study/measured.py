@@ -14,8 +14,8 @@ from porolub.study.strategies import Setting
 
 Floats = NDArray[np.float64]
 NOISE = 1e-8  # relative: what Newton leaves of a number
-ORDERS_OF_MESHES = (0.3, 3.5)
-"""Orders to believe: quadratic displacements are of order 3, contact edges make it less."""
+ORDERS_OF_MESHES = (0.5, 3.0)
+"""Orders to believe: that of quadratic displacements is 3, contact edges make it less."""
 ORDERS_OF_TOLERANCES = (0.3, 1.5)
 """An error grows about as the tolerance of a step, or slower."""
 NOTHING = 1e-12  # a limit this small, of the largest value, is 0

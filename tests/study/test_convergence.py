@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porolub.study.convergence import ORDERS, SAFETY, extrapolated, observed_order
+from porolub.study.convergence import ORDERS, SAFETY, UNCONFIRMED, extrapolated, observed_order
 
 LIMITS = st.floats(-1e3, 1e3)
 SLOPES = st.floats(0.1, 1e3) | st.floats(-1e3, -0.1)
@@ -101,8 +101,17 @@ def test_a_fourth_level_that_agrees_makes_it_surer() -> None:
     v = 7 + 3 * h**2
     assert extrapolated(h[1:], v[1:]).uncertain == pytest.approx(SAFETY * 3 / 64)
     assert extrapolated(h, v).uncertain == pytest.approx(0.1 * 3 / 64)
-    v[0] += 1
-    assert 0.1 * 3 / 64 < extrapolated(h, v).uncertain < SAFETY * 3 / 64 * 1.001
+
+
+def test_a_fourth_level_that_does_not_agree_makes_it_less_sure() -> None:
+    h = np.array([1, 0.5, 0.25, 0.125])
+    v = 7 + 3 * h**2
+    v[0] = 11  # the coarser levels have another limit
+    first, all_of_them = extrapolated(h[:3], v[:3]), extrapolated(h, v)
+    assert all_of_them.limit == pytest.approx(7)
+    assert all_of_them.uncertain == pytest.approx(abs(first.limit - 7))
+    v[0] = 7  # and now they have none
+    assert extrapolated(h, v).uncertain == pytest.approx(UNCONFIRMED * 3 / 64)
 
 
 @pytest.mark.parametrize(
