@@ -73,7 +73,7 @@ def make_report(scene: Any, outcome: Outcome) -> Report:
     stress = comm.allreduce(fields.von_mises.max(initial=-np.inf), op=MPI.MAX)
     summary: dict[str, Any] = {
         "status": outcome.status, "message": outcome.message,
-        **values,
+        **values, "error_estimate": dict(outcome.errors),
         "von_mises_max": float(stress) if model.law is not None else None,
         "jacobian_min": model.system.lowest_jacobian if model.law is not None else None,
         "effects": effects(scene), "dofs": counts, "ranks": comm.size,

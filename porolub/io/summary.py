@@ -36,6 +36,7 @@ KEYS = (
     "jacobian_min",
     "mass_balance_error",
     "load_balance_error",
+    "error_estimate",
     "effects",
     "dofs",
     "ranks",

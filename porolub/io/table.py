@@ -30,6 +30,19 @@ Row = tuple[str, str, str]
 Summary = dict[str, Any]
 
 
+ESTIMATED = {
+    "friction_coefficient": "friction",
+    "load_fluid": "load by the fluid",
+    "load_total": "load",
+    "approach": "approach",
+    "contact_length": "contact length",
+    "pressure_max": "highest fluid pressure",
+}
+"""Numbers whose estimated errors are shown, and what they are called there."""
+ROUNDING = 1e-9
+"""Relative; what is prescribed has no more error than that."""
+
+
 def print_results(console: Console, summary: Summary, scene: Scene) -> None:
     """Print the summary of a run (SI) in the units of the trade; what it lacks is left out."""
     console.print(results_table(summary, scene))
@@ -148,6 +161,22 @@ def _checks(summary: Summary) -> Iterator[Row]:
         value = number(summary, key)
         if value is not None:
             yield f"{label} balance error", f"{value:.1e}", "relative"
+    yield from _estimated(summary)
+
+
+def _estimated(summary: Summary) -> Iterator[Row]:
+    """Estimated errors of the main numbers, largest first; those a scene prescribes have none."""
+    errors = summary.get("error_estimate") or {}
+    found = {}
+    for key, label in ESTIMATED.items():
+        value, error = number(summary, key), number(errors, key)
+        if value and error is not None and error > ROUNDING * abs(value):
+            found[label] = error / abs(value)
+    largest_first = sorted(found, key=lambda label: -found[label])
+    shown = [f"{label} {100 * found[label]:.2g} %" for label in largest_first]
+    if shown:
+        first, _, size = shown[0].rpartition(" ")[0].rpartition(" ")
+        yield "error, estimated", f"{size} %", ", ".join([first, *shown[1:]])
 
 
 def _cost(summary: Summary) -> Iterator[Row]:

@@ -96,7 +96,8 @@ class Derived:
         s, model = self.model.scales, self.model
         solid = fluid = 0.0
         if model.surface is not None and "l" in model.dofs.fields:
-            solid = self.total(self.nodal("l")[self.mine, 0] @ model.surface.weights[self.mine])
+            pressure = self.contact_pressure()[self.mine]
+            solid = self.total(pressure @ model.surface.weights[self.mine])
         if model.surface is not None and "p" in model.dofs.fields:
             fluid = self.total((self.surface.weights * self.surface.value("p")).sum())
         total = solid + fluid

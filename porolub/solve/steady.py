@@ -20,6 +20,8 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from porolub.mesh import build_mesh
+from porolub.solve.derived import scalars
+from porolub.solve.estimate import mesh_error, of_neighbours
 from porolub.solve.linear import Linear, final_preset
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.neighbours import Neighbour, blended, blended_edges
@@ -36,6 +38,7 @@ from porolub.solve.zones import contact_edges
 log = logging.getLogger(__name__)
 FAILURES_ALLOWED = 2  # meshes without a steady state before the sequence is given up
 ALONE = {2: 3000, 3: 300}  # cells below which a mesh of the sequence is left to one rank
+EDGE_SIZE = 10e-6  # m; of the smallest elements unless the scene says
 EDGES_MOVED = 0.1  # thicknesses a place may lie off the one the mesh was refined toward
 WARM_ITERATIONS = 15  # of Newton from a blend of neighbours, before it is given up
 COARSEST = {2: 80, 3: 40}  # elements along the surface on the first mesh, at most
@@ -62,7 +65,7 @@ class Level:
     def coarser(self) -> Level:
         """Half the elements each way, but three where there were as many."""
         across, deep = (min(n, max(3, -(-n // 2))) for n in (self.across, self.deep))
-        return Level(-(-self.along // 2), across, deep)
+        return Level(-(-self.along // 2), across, deep, self.graded)
 
 
 @dataclass(frozen=True)
@@ -76,6 +79,7 @@ class Found:
     linear_iterations: int = 0
     rejected: int = 0
     preset: str = ""  # of the linear solver
+    numbers: dict[str, Any] = field(default_factory=dict)  # those of a summary, if it converged
 
 
 @dataclass
@@ -99,6 +103,7 @@ class Outcome:
     status: str = ""  # converged | failed | interrupted; by default from ``converged``
     time_steps: int = 0
     overall: dict[str, float] = field(default_factory=dict)  # what the summary says of all steps
+    errors: dict[str, float] = field(default_factory=dict)  # of the summary's numbers, absolute, SI
 
     def __post_init__(self) -> None:
         self.status = self.status or ("converged" if self.converged else "failed")
@@ -115,10 +120,10 @@ def levels_of(scene: Any) -> list[Level]:
     if scene.geometry.shape == "file" or lubricated_name(scene) is None:
         return [last]
     levels = [last]
-    if last.graded:
-        levels.insert(0, Level(mesh.along, mesh.across, mesh.deep))
     while levels[0].along > COARSEST[scene.dimension]:
         levels.insert(0, levels[0].coarser())
+    if last.graded:  # toward what?
+        levels.insert(0, replace(levels[0], graded=False))
     return levels
 
 
@@ -170,7 +175,9 @@ class SteadySolver:
             return None
         refuse_unused_together(self._user_options, self.comm)
         self.warm = True
-        return self._outcome(found[1], model, found[0], edges)
+        errors = of_neighbours([n.solution.errors for n in self.neighbours],
+                               scalars(model, found[0]))
+        return self._outcome(found[1], model, found[0], edges, errors)
 
     def _warm(self, model: Model, x: PETSc.Vec) -> tuple[PETSc.Vec, NewtonResult] | None:
         """Newton from x, in place; None, and x freed, if it does not converge soon."""
@@ -199,6 +206,7 @@ class SteadySolver:
         before = Found()
         levels = levels_of(self.scene)
         failures = 0
+        numbers: dict[bool, list[dict[str, Any]]] = {False: [], True: []}  # by grading
         for number, level in enumerate(levels):
             last = number == len(levels) - 1
             self.announce(level.name, (number + 1) / len(levels))
@@ -212,12 +220,16 @@ class SteadySolver:
             if last or found.preset == final_preset(self.scene):
                 refuse_unused_together(self._user_options, self.comm)
             failures += not found.result.converged
+            numbers[level.graded] += [found.numbers] if found.numbers else []
             if last or failures == FAILURES_ALLOWED:
                 if model is None:
                     assert found.data is not None
                     model = self._model(level, scales, before.edges, self.comm)
                     x = restore(model, found.data)
-                return self._outcome(found.result, model, x, before.edges)
+                alike = numbers[level.graded]
+                errors = mesh_error(numbers[False][-1:] + alike if level.graded else alike,
+                                    self._element(level, model) * scales.length)
+                return self._outcome(found.result, model, x, before.edges, errors)
             if found.result.converged:
                 before = found
             else:
@@ -239,7 +251,7 @@ class SteadySolver:
         data = snapshot(model, x) if hand_on else None
         edges = contact_edges(model, x) if hand_on and result.converged else ()
         found = Found(result, data, edges, newton.iterations, newton.linear_iterations, rejected,
-                      linear.preset)
+                      linear.preset, scalars(model, x) if result.converged else {})
         newton.destroy()
         return model, x, found
 
@@ -288,10 +300,20 @@ class SteadySolver:
         if self.scene.geometry.shape != "file":
             options = {"along": level.along, "across": level.across, "deep": level.deep}
             if level.graded and edges:
-                size = self.scene.mesh.edge_size
-                options |= {"edges": edges, "edge_size": (size or 10e-6) / scales.length}
+                options |= {"edges": edges, "edge_size": self._edge_size(level)}
         mesh = build_mesh(self.scene, comm, length_scale=scales.length, **options)
         return build_model(self.scene, mesh, scales)
+
+    def _edge_size(self, level: Level) -> float:
+        """Smallest elements of a graded mesh, in mesh units."""
+        finest: float = (self.scene.mesh.edge_size or EDGE_SIZE) / self.scales.length
+        return finest * self.scene.mesh.along / level.along
+
+    def _element(self, level: Level, model: Model) -> float:
+        """Length along the surface of the elements where contact ends, in mesh units."""
+        if model.mesh.shape is None:
+            return 0.0
+        return self._edge_size(level) if level.graded else model.mesh.shape.length / level.along
 
     def _level(self, model: Model, newton: Newton, data: Snapshot | None,
                name: str) -> tuple[PETSc.Vec, NewtonResult, int]:
@@ -350,14 +372,14 @@ class SteadySolver:
         return f"The steady solve failed: {why}; {tip}."
 
     def _outcome(self, result: NewtonResult, model: Model, x: PETSc.Vec,
-                 edges: tuple[float, ...]) -> Outcome:
+                 edges: tuple[float, ...], errors: dict[str, float]) -> Outcome:
         why = result.why
         if result.place is not None:
             why += f", near {place_in_words(result.place, model.scales.length)}"
         message = "converged" if result.converged else self._advice(why)
         return Outcome(result.converged, message, model, x, self.records,
                        self.newton_iterations, self.linear_iterations, self.rejected, self.clock,
-                       edges)
+                       edges, errors=errors if result.converged else {})
 
 
 def _free(model: Model, x: PETSc.Vec) -> None:

@@ -19,7 +19,7 @@ FILES = {
 }
 PLOTS = {"von_mises.png", "pressure.png", "surface.png", "flow.png"}
 TEXTS = {"status", "message"}
-TABLES = {"effects", "dofs", "wall_time", "versions"}
+TABLES = {"effects", "dofs", "wall_time", "versions", "error_estimate"}
 
 
 def test_every_file_is_there_and_none_is_empty(case1: Output) -> None:
@@ -38,6 +38,11 @@ def test_the_summary_has_every_key_and_every_number_is_one(case1: Output) -> Non
     assert case1.summary["effects"] == [
         "solid", "pores", "carry", "film", "contact", "rotation", "load"]
     assert case1.summary["versions"]["petsc"].startswith("3.")
+
+
+def test_estimated_errors_are_those_of_numbers(case1: Output) -> None:
+    """None on so coarse a mesh, which has no coarser one to compare with."""
+    assert case1.summary["error_estimate"] == {}
 
 
 def test_the_unknowns_are_those_that_check_announces(case1: Output) -> None:

@@ -19,17 +19,19 @@ def test_each_mesh_halves_the_elements_of_the_next_down_to_a_coarse_one(
     levels = levels_of(case1(along, across, f"mesh.grading={grading}"))
     assert levels[-1] == Level(along, across, graded=grading == "contact")
     assert levels[0].along <= COARSEST[2]
-    assert not any(level.graded for level in levels[:-1])
-    uniform = [level for level in levels if not level.graded] or levels
-    for coarse, fine in pairwise(uniform):
+    alike = [level for level in levels if level.graded == levels[-1].graded]
+    for coarse, fine in pairwise(alike):
         assert coarse.along == (fine.along + 1) // 2
         assert 3 <= coarse.across <= fine.across
         assert fine.along > COARSEST[2]
 
 
-def test_a_graded_mesh_starts_from_a_uniform_one_of_as_many_elements() -> None:
+def test_graded_meshes_start_from_the_coarsest_one_ungraded() -> None:
     scene = case1(60, 6, "mesh.grading=contact")
     assert levels_of(scene) == [Level(60, 6), Level(60, 6, graded=True)]
+    scene = case1(300, 30, "mesh.grading=contact")
+    graded = [Level(75, 8, graded=True), Level(150, 15, graded=True), Level(300, 30, graded=True)]
+    assert levels_of(scene) == [Level(75, 8), *graded]
 
 
 def test_the_shipped_mesh_comes_last_of_three() -> None:
