@@ -1,15 +1,27 @@
-"""How far the numbers of a steady solve are from those of an infinitely fine mesh.
+"""How far the numbers of a run are from those of infinitely fine meshes and steps.
 
-The solve goes through meshes of ever more elements anyway; what a number changed by from each to
-the next says how far it still is from its limit, whatever the number is (a goal-oriented estimate
-that costs nothing).  With order p it is |q_h - q_2h| / (2^p - 1); p is at least 1 where the meshes
-resolve what happens, so the last change itself is taken for the error: rather too large, by 3 for
-order 2.  Roache (1994) calls the like a grid convergence index.
+In space: a steady solve goes through meshes of ever more elements anyway; what a number changed by
+from each to the next says how far it still is from its limit, whatever the number is (a
+goal-oriented estimate that costs nothing).  With order p it is |q_h - q_2h| / (2^p - 1); p is at
+least 1 where the meshes resolve what happens, so the last change itself is taken for the error:
+rather too large, by 3 for order 2.  Roache (1994) calls the like a grid convergence index.
+
+In time: what a number differs by from the polynomial through its last values is the scheme's local
+error but for a factor (Milne's device; Hairer, Norsett, Wanner 1993, III.7).  A layer forgets, so
+errors of many steps add up like random ones: the root of the sum of their squares is taken.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from porolub.solve.report import StepRecord
+
+Array = NDArray[np.float64]
 
 QUANTITIES = ("friction_coefficient", "friction_fluid", "load_total", "load_solid", "load_fluid",
               "load_ratio", "approach", "film_min", "contact_length", "penetration_length",
@@ -20,6 +32,8 @@ QUANTITIES = ("friction_coefficient", "friction_fluid", "load_total", "load_soli
 SLOWEST = 1.2  # ratio of two changes below which convergence is not believed
 FASTEST = 4.0  # of order 2; above it the last change is small by chance
 
+MARK = "error "  # before names among the totals of a checkpoint
+
 Numbers = Mapping[str, float | None]
 
 
@@ -27,8 +41,9 @@ def mesh_error(levels: Sequence[Numbers], node: float) -> dict[str, float]:
     """Absolute error of each of QUANTITIES on the last mesh, SI.
 
     ``levels``: the numbers on meshes of which each has twice the elements of the one before, along
-    and across, coarsest first (of graded meshes the first may be one that is not graded yet); ``node``: size of the elements where contact ends (m), for its ends
-    are nodes.  Empty with fewer than two; quantities without a number are left out.
+    and across, coarsest first (of graded meshes the first may be one that is not graded yet);
+    ``node``: size of the elements where contact ends (m), for its ends are nodes.  Empty with
+    fewer than two; quantities without a number are left out.
     """
     if len(levels) < 2:
         return {}
@@ -71,3 +86,48 @@ def of_neighbours(known: Sequence[Numbers], numbers: Numbers) -> dict[str, float
     """
     names = [k for k in QUANTITIES if all(k in errors for errors in known)]
     return absolute({k: max(float(e[k] or 0.0) for e in known) for k in names}, numbers)
+
+
+def time_error(times: Array, values: Array, order: int) -> float:
+    """Of numbers (n,) found at times (n,) by BDF of an order, over all of the run."""
+    n = order + 1  # points that the polynomial goes through
+    if len(times) <= n:
+        return 0.0
+    t = np.lib.stride_tricks.sliding_window_view(times, n + 1)
+    y = np.lib.stride_tricks.sliding_window_view(values, n + 1)
+    t, y = (part[np.all(np.diff(t, axis=1) > 0.0, axis=1)] for part in (t, y))
+    ahead = np.zeros(len(t))
+    for i in range(n):  # Lagrange
+        others = [j for j in range(n) if j != i]
+        ahead += y[:, i] * np.prod((t[:, n:] - t[:, others]) / (t[:, [i]] - t[:, others]), axis=1)
+    share = (t[:, n] - t[:, n - 1]) / (t[:, n] - t[:, 0])
+    return float(np.sqrt(np.sum((share * (y[:, n] - ahead)) ** 2)))
+
+
+@dataclass
+class RunErrors:
+    """Of a run in time; ``space``: relative errors of the steady state it starts from."""
+
+    space: dict[str, float] = field(default_factory=dict)
+
+    @classmethod
+    def from_totals(cls, totals: Mapping[str, float]) -> RunErrors:
+        """From what a checkpoint holds."""
+        return cls({k.removeprefix(MARK): v for k, v in totals.items() if k.startswith(MARK)})
+
+    def totals(self) -> dict[str, float]:
+        """What a checkpoint is to hold."""
+        return {f"{MARK}{name}": error for name, error in self.space.items()}
+
+    def at_end(self, records: Sequence[StepRecord], order: int) -> dict[str, float]:
+        """Absolute errors of the last step's numbers, SI: in space, as large relatively as at the
+        start, and in time.  Empty where the run did not start from a steady state."""
+        if not records:
+            return {}
+        times = np.array([record.time for record in records])
+        found = absolute(self.space, records[-1].values)
+        for name in found:
+            values = np.array([record.values.get(name, np.nan) for record in records], dtype=float)
+            if np.isfinite(values).all():
+                found[name] += time_error(times, values, order)
+        return found

@@ -11,8 +11,9 @@ import numpy as np
 
 from porolub.errors import SceneError
 from porolub.solve.balance import FluidBalance
-from porolub.solve.derived import Derived, scalars_of
+from porolub.solve.derived import Derived, scalars, scalars_of
 from porolub.solve.drive import drive
+from porolub.solve.estimate import RunErrors, relative
 from porolub.solve.gather import gather_fields, gather_surface
 from porolub.solve.linear import Linear
 from porolub.solve.newton import Newton
@@ -51,7 +52,7 @@ class TransientSolver:
         self.scene, self.comm, self.watch, self.stop = scene, comm, watch, stop
         self.give_up = give_up or stop
         self.records: list[StepRecord] = []
-        self.totals = Totals()
+        self.totals, self._errors = Totals(), RunErrors()
         self._user_options = list(user_options)
         of_newton = [name for name in user_options if not name.startswith("ts_")]
         self.steady = SteadySolver(scene, comm, watch.newton, watch.stage, of_newton,
@@ -155,6 +156,7 @@ class TransientSolver:
             self.model, self._edges = found.model, found.edges
             self._create_stepper()
             self.stepper.restart(0.0, found.x)
+            self._errors = RunErrors(relative(found.errors, scalars(found.model, found.x)))
             found.x.destroy()
             self.totals.newton_iterations = found.newton_iterations
             self.totals.linear_iterations = found.linear_iterations
@@ -223,6 +225,7 @@ class TransientSolver:
     def _resume(self, resume: Resume) -> None:
         """Take up where a checkpoint left off."""
         totals, self._frame = resume.totals, resume.frame
+        self._errors = RunErrors.from_totals(totals)
         self._edges = tuple(e / self.steady.scales.length for e in resume.edges)
         self.model = self.steady.model(self._edges)
         self._create_stepper()
@@ -320,6 +323,7 @@ class TransientSolver:
         totals["linear_iterations"] += self.stepper.newton.linear_iterations
         totals |= {f"gained {k}": e.gained for k, e in enumerate(entries)}
         totals |= {f"largest {name}": v for name, v in self.stepper.sizes.items()}
+        totals |= self._errors.totals()
         return Resume(states, tuple(e.order for e in entries), self._next * self.unit,
                       self._frame, tuple(e * self.model.scales.length for e in self._edges),
                       totals)
@@ -372,7 +376,7 @@ class TransientSolver:
                        newton.linear_iterations + t.linear_iterations,
                        t.rejected_steps, self.clock, self._edges,
                        status or ("converged" if done else "failed"), t.time_steps,
-                       self._overall())
+                       self._overall(), self._errors.at_end(self.records, self.scene.time.order))
 
     def _overall(self) -> dict[str, float]:
         """What the summary says of the whole run."""

@@ -1,13 +1,23 @@
 """Errors estimated from a sequence of meshes."""
 
+import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 from mpi4py import MPI
 
 from porolub.solve.derived import scalars
-from porolub.solve.estimate import QUANTITIES, absolute, mesh_error, of_neighbours, relative
+from porolub.solve.estimate import (
+    QUANTITIES,
+    RunErrors,
+    absolute,
+    mesh_error,
+    of_neighbours,
+    relative,
+    time_error,
+)
 from porolub.solve.options import set_options
+from porolub.solve.report import StepRecord
 from porolub.solve.steady import SteadySolver
 from tests.solve.models import case1
 
@@ -55,6 +65,38 @@ def test_neighbours_hand_on_the_largest_relative_error() -> None:
     assert of_neighbours(known, {NAME: -2.0, "approach": 1.0}) == {NAME: pytest.approx(0.6)}
     assert relative({NAME: 0.5, "approach": 1.0}, {NAME: -2.0, "approach": 0.0}) == {NAME: 0.25}
     assert absolute({NAME: 0.25}, {NAME: -2.0}) == {NAME: 0.5}
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+def test_polynomials_of_the_order_have_no_error_in_time(order: int) -> None:
+    times = np.cumsum(0.1 + 0.05 * np.sin(np.arange(30.0)))
+    assert time_error(times, times**order, order) < 1e-10
+    assert time_error(times, times ** (order + 1), order) > 1e-4
+    assert time_error(times[: order + 1], times[: order + 1] ** 5, order) == 0.0
+
+
+@pytest.mark.parametrize("count", [100, 400])
+def test_error_in_time_is_near_that_of_a_layer_that_forgets(count: int) -> None:
+    """y' = (sin t - y)/tau by BDF2; within a factor of 3, or too large."""
+    tau, h = 0.5, 4.0 * np.pi / count
+    t = h * np.arange(count + 1)
+    phase = np.arctan(tau)
+    exact = np.sin(t - phase) / np.hypot(1.0, tau)
+    y = exact.copy()
+    for n in range(2, count + 1):
+        y[n] = (2.0 * y[n - 1] - 0.5 * y[n - 2] + h / tau * np.sin(t[n])) / (1.5 + h / tau)
+    true = np.abs(y - exact).max()
+    assert true / 3.0 <= time_error(t, y, 2) <= 10.0 * true
+
+
+def test_a_run_adds_both_errors_and_a_checkpoint_keeps_the_first() -> None:
+    records = [StepRecord(t, {NAME: t**3}) for t in np.linspace(0.0, 1.0, 20)]
+    errors = RunErrors.from_totals({"time_steps": 3.0, **RunErrors({NAME: 0.1}).totals()})
+    found = errors.at_end(records, 2)
+    times = np.array([record.time for record in records])
+    assert found == {NAME: pytest.approx(0.1 + time_error(times, times**3, 2))}
+    assert RunErrors().at_end(records, 2) == {}
+    assert errors.at_end([], 2) == {}
 
 
 @pytest.mark.parametrize(("along", "changes"), [
