@@ -22,6 +22,7 @@ from porolub.io.directory import write_results
 from porolub.io.progress import Progress
 from porolub.io.solution import read_solution, write_solution
 from porolub.run_transient import Recorder, begin, recorded
+from porolub.solve.estimate import relative
 from porolub.solve.neighbours import Neighbour, solution_of
 from porolub.solve.options import UnusedOption
 from porolub.solve.steady import Outcome, SteadySolver
@@ -117,7 +118,8 @@ class Cases:
             with _in_trouble():
                 summary = self._finish(scene, outcome, directory)
                 if task.wanted and outcome.converged and outcome.model.mesh.shape is not None:
-                    state = solution_of(outcome.model, outcome.x)
+                    errors = relative(outcome.errors, summary)
+                    state = solution_of(outcome.model, outcome.x, errors)
                     write_solution(self._state(task.case.key), state, comm)
             outcome.destroy()
             return summary, task.starts if steady.warm else ()
