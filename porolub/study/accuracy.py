@@ -63,7 +63,8 @@ class Study:
         """Return the command that runs the scene with a setting."""
         replaced = {path_of(text) for text in setting.changes}
         kept = [text for text in self.overrides if path_of(text) not in replaced]
-        return f"porolub run {shlex.quote(self.scene)} {as_options([*kept, *setting.changes])}"
+        options = as_options([*kept, *setting.changes])
+        return f"porolub run {shlex.quote(self.scene)} {options}".rstrip()
 
 
 def run_accuracy(

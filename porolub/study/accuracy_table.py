@@ -102,8 +102,8 @@ def _size(value: float, found: Measured, unit: Unit) -> str:
 
 
 def percent(value: float) -> str:
-    """Write a relative error with two digits: ``12 %``, ``0.0031 %``, ``2e-06 %``."""
-    return f"{100 * value:.2g} %"
+    """Write a relative error with two digits: ``12 %``, ``0.0031 %``; ``110 %``."""
+    return f"{100 * value:.2g} %" if value < 0.995 else f"{100 * value:.0f} %"
 
 
 def unit_of(quantity: str, study: Study) -> str:
@@ -142,8 +142,8 @@ def advice_lines(study: Study) -> Iterator[str]:
     if not study.found:
         yield "No run converged, so there is nothing to recommend."
         return
-    names = ", ".join(m.quantity for m in study.found if m.relative)
-    yield f"Cheapest setting for {names} together:"
+    names = [m.quantity for m in study.found if m.relative]
+    yield f"Cheapest setting for {', '.join(names)}{' together' * (len(names) > 1)}:"
     for advice in study.advice:
         yield from _advice(study, advice)
     sides = study.side_by_side

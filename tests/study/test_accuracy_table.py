@@ -104,7 +104,8 @@ def test_strategies_that_disagree_are_told() -> None:
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(0.123, "12 %"), (0.001, "0.1 %"), (3.1e-5, "0.0031 %"), (0.0, "0 %")]
+    ("value", "text"),
+    [(0.123, "12 %"), (0.001, "0.1 %"), (3.1e-5, "0.0031 %"), (0.0, "0 %"), (1.1, "110 %")],
 )
 def test_errors_are_written_with_two_digits(value: float, text: str) -> None:
     assert percent(value) == text
