@@ -6,10 +6,10 @@ from math import prod
 from typing import Any
 
 from porolub.scene import Scene
+from porolub.solve.steady import EDGE_SIZE
 
 LEVELS = (3, 8)
 """How many levels there may be: three make an order."""
-EDGE_SIZE = 10e-6  # m, smallest element of a graded mesh that does not say
 COUNTS = ("along", "across", "deep")
 TENFOLD = 10.0  # between two tolerances
 LOOSEST = 0.5

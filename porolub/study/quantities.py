@@ -86,8 +86,10 @@ def value_of(summary: Summary, quantity: str) -> float | None:
 
 
 def estimate_of(summary: Summary, quantity: str) -> float | None:
-    """Return the absolute error a run estimated of itself, SI; None where it did not."""
-    if "." in quantity:
+    """Return the absolute error a run estimated of itself, SI; None where it did not, as of means
+    and extremes over time."""
+    name, _, which = quantity.partition(".")
+    if which in STATISTICS:
         return None
-    estimate = number(summary.get("error_estimate") or {}, quantity)
+    estimate = number(summary.get("error_estimate") or {}, name)
     return None if estimate is None else abs(estimate)
