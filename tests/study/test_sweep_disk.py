@@ -85,7 +85,7 @@ main()
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("rank", [0, 1])
+@pytest.mark.parametrize("rank", [1, pytest.param(0, marks=pytest.mark.slow)])
 def test_all_ranks_stop_where_one_cannot_write(run_mpi, tmp_path: Path, rank: int) -> None:
     file = sweep_file(tmp_path)
     said = run_mpi(2, FULL_DISK, rank, "sweep", file, "--out", "here", "--quiet", code=3,

@@ -199,7 +199,7 @@ main()
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize("group", [0, 1])
+@pytest.mark.parametrize("group", [1, pytest.param(0, marks=pytest.mark.slow)])
 def test_a_defect_in_what_is_shown_leaves_nobody_waiting(
     run_mpi, tmp_path: Path, group: int
 ) -> None:

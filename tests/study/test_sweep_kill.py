@@ -48,7 +48,12 @@ def goes_on(file: Path, out: Path, expected: Table) -> None:
 
 @pytest.mark.parametrize(
     ("where", "count"),
-    [("in a case", 30), ("in a line", 4), ("in a state", 3), ("in the table", 2)],
+    [
+        ("in a case", 30),
+        ("in a line", 4),
+        ("in a state", 3),
+        pytest.param("in the table", 2, marks=pytest.mark.slow),
+    ],
 )
 def test_a_sweep_that_was_killed_goes_on(
     tmp_path: Path, expected: Table, where: str, count: int
@@ -63,7 +68,9 @@ def test_a_sweep_that_was_killed_goes_on(
 
 
 @pytest.mark.mpi
-@pytest.mark.parametrize(("rank", "count"), [(0, 20), (1, 5)])
+@pytest.mark.parametrize(
+    ("rank", "count"), [(1, 5), pytest.param(0, 20, marks=pytest.mark.slow)]
+)
 def test_a_rank_that_is_killed_takes_the_others_along(
     run_mpi, tmp_path: Path, expected: Table, rank: int, count: int
 ) -> None:

@@ -25,6 +25,11 @@ def _no_pictures(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(PLOTS, lambda directory: [])
 
 
+@pytest.fixture
+def _no_pictures_of_cases(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("porolub.io.plots.plot_directory", lambda directory: [])
+
+
 def names(directory: Path) -> set[str]:
     return {str(path.relative_to(directory)) for path in directory.rglob("*")}
 
@@ -54,6 +59,7 @@ def test_a_steady_case_has_the_directory_of_a_run(tmp_path: Path) -> None:
     no_remains(tmp_path / "sweep")
 
 
+@pytest.mark.usefixtures("_no_pictures_of_cases")
 def test_a_case_in_time_has_the_directory_and_the_history_of_a_run(tmp_path: Path) -> None:
     file = sweep_file(tmp_path, SPEED, job="case2", set=IN_TIME, keep="results")
     assert sweep(file, tmp_path / "sweep").exit_code == 0
@@ -88,6 +94,7 @@ def of_case(directory: Path) -> dict[str, tuple[float, int]]:
     return found
 
 
+@pytest.mark.usefixtures("_no_pictures_of_cases")
 def test_directories_follow_the_numbers_of_their_cases(tmp_path: Path) -> None:
     here = tmp_path / "sweep"
 
@@ -113,6 +120,7 @@ def test_directories_follow_the_numbers_of_their_cases(tmp_path: Path) -> None:
     assert all(name.startswith("other-") for name in fewer)
 
 
+@pytest.mark.usefixtures("_no_pictures_of_cases")
 def test_rows_without_results_do_not_do_where_results_are_to_be_kept(tmp_path: Path) -> None:
     assert sweep(sweep_file(tmp_path, forces(2)), tmp_path / "here").exit_code == 0
     file = sweep_file(tmp_path, forces(2), keep="results")
@@ -123,6 +131,7 @@ def test_rows_without_results_do_not_do_where_results_are_to_be_kept(tmp_path: P
     assert len(journal(tmp_path / "here")) == 4
 
 
+@pytest.mark.usefixtures("_no_pictures_of_cases")
 def test_results_of_parts_do(tmp_path: Path) -> None:
     file = sweep_file(tmp_path, forces(2), keep="results")
     for words in (["--part", "1/2"], ["--part", "2/2"], []):
