@@ -165,15 +165,19 @@ def compared(trial: Trial) -> Verdicts:
 
 
 def difference_of_states(found: Any, finer: Any) -> dict[str, float]:
-    """Loads over the total load, friction over the dry one (0.1 at least), the approach over itself
-    (1 um at least)."""
-    total = abs(finer["load_total"])
-    different = {key: abs(found[key] - finer[key]) for key in
-                 ("load_total", "load_solid", "load_fluid", "friction_coefficient", "approach")}
-    return {"L": different["load_total"] / total, "L_s": different["load_solid"] / total,
-            "L_f": different["load_fluid"] / total,
-            "mu": different["friction_coefficient"] / max(finer.dry_friction, 0.1),
-            "v0": different["approach"] / max(abs(finer["approach"]), 1e-6)}
+    """Loads over the total load (1 N/m at least); where the load is given, also friction over the
+    dry one (0.1 at least) and the approach over itself (1 um at least)."""
+    def over(key: str, size: float) -> float:
+        return abs(found[key] - finer[key]) / size
+
+    total = max(abs(finer["load_total"]), 1.0)
+    different = {"L": over("load_total", total), "L_s": over("load_solid", total),
+                 "L_f": over("load_fluid", total)}
+    if finer.values["load_balance_error"] is None:
+        return different
+    return different | {
+        "mu": over("friction_coefficient", max(finer.dry_friction, 0.1)),
+        "v0": over("approach", max(abs(finer["approach"]), 1e-6))}
 
 
 def difference_of_runs(found: Any, finer: Any) -> dict[str, float]:
