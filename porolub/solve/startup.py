@@ -33,12 +33,17 @@ class StartUp:
     A layer that is nearly undrained meets the plane long before it consolidates: where the body
     would move on by more than ``moved`` thicknesses in the first step, all steps are as much
     shorter.
+
+    A given approach is reached in the time ``lowered``, in which a contact of twenty thicknesses
+    drains to its ends: pressed faster, fluid that has nowhere to go carries many times the load
+    of the steady state, and a deep approach fails.
     """
 
     first_step: float = 1e-4
     moved: float = 0.01
     smallest_step: float = 1e-7
     steps: int = 400
+    lowered: float = 100.0
     settled: float = 2e-3  # change per step below which steady Newton is tried
     settled_after: float = 0.05
 
@@ -143,7 +148,8 @@ class Starter:
         for _ in range(options.steps):
             system.backward_euler(system.physical(dofs.to_local(x)), dt)
             if operation.force is None and not settle:  # a prescribed approach comes down with time
-                operation.approach = LIFTED + (target - LIFTED) * min(1.0, (t + dt) / 0.01)
+                lowered = min(1.0, (t + dt) / options.lowered)
+                operation.approach = LIFTED + (target - LIFTED) * lowered
             trial = x.copy()
             step = self.newton.solve(trial, "start-up", min(1.0, t), 1e-3, 10)
             if not step.converged:
