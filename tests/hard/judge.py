@@ -166,7 +166,7 @@ def compared(trial: Trial) -> Verdicts:
 
 def difference_of_states(found: Any, finer: Any) -> dict[str, float]:
     """Loads over the total load (1 N/m at least); where the load is given, also friction over the
-    dry one (0.1 at least) and the approach over itself (1 um at least)."""
+    dry one (0.1 at least), the approach over itself or the film's thickness (10 um at least)."""
     def over(key: str, size: float) -> float:
         return abs(found[key] - finer[key]) / size
 
@@ -177,7 +177,7 @@ def difference_of_states(found: Any, finer: Any) -> dict[str, float]:
         return different
     return different | {
         "mu": over("friction_coefficient", max(finer.dry_friction, 0.1)),
-        "v0": over("approach", max(abs(finer["approach"]), 1e-6))}
+        "v0": over("approach", max(abs(finer["approach"]), finer["film_min"], 1e-5))}
 
 
 def difference_of_runs(found: Any, finer: Any) -> dict[str, float]:
