@@ -12,8 +12,8 @@ from porolub.interrupt import Interrupt
 from porolub.io.log import close_logging, setup_logging
 from porolub.io.progress import Progress
 from porolub.run_transient import run_transient
+from porolub.solve.accurate import steady_solver
 from porolub.solve.options import forget_options, set_options
-from porolub.solve.steady import SteadySolver
 from porolub.together import on_root
 
 
@@ -31,10 +31,10 @@ def run_scene(scene: Any, out_dir: Path, petsc_options: str = "", quiet: bool = 
     on_root(comm, lambda: setup_logging(Path(out_dir)))
     try:
         with Interrupt() as interrupt, Progress("quiet" if quiet or not root else "auto") as shown:
-            solver = SteadySolver(scene, comm, shown.newton, shown.stage, user_options,
-                                  interrupt.raise_if_asked)
+            solver = steady_solver(scene, comm, shown.newton, shown.stage, user_options,
+                                   interrupt.raise_if_asked)
             outcome = solver.solve()
-        finish(scene, outcome, Path(out_dir), quiet)
+        finish(outcome.model.scene, outcome, Path(out_dir), quiet)
         outcome.destroy()
         return 0
     finally:

@@ -22,6 +22,7 @@ from porolub.io.progress import Progress
 from porolub.io.summary import read_summary
 from porolub.scene import load_scene, scene_from_dict
 from porolub.scene.compare import differences
+from porolub.solve.accurate import chosen_in_time
 from porolub.solve.options import forget_options, set_options, users_options
 from porolub.solve.report import FrameData, Resume, StepRecord
 from porolub.solve.steady import Outcome
@@ -93,6 +94,9 @@ def run_transient(scene: Any, out_dir: Path, petsc_options: str = "", quiet: boo
     comm, out_dir = MPI.COMM_WORLD, Path(out_dir)
     root = comm.rank == 0
     user_options = set_options(petsc_options)
+    if scene.accuracy is not None and resume is None:
+        with Interrupt() as interrupt:
+            scene = chosen_in_time(scene, comm, interrupt.raise_if_asked)
     toml = begin(scene, out_dir, comm, resumed=resume is not None)
     setup_logging(None)
     on_root(comm, lambda: setup_logging(out_dir, resume=resume is not None))

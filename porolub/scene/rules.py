@@ -5,6 +5,7 @@ import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from porolub.scene.accuracy import accuracy_violations
 from porolub.scene.geometry import MeshFile
 from porolub.scene.motion_rules import motion_violations
 from porolub.scene.operation import Rotation
@@ -24,6 +25,7 @@ def violations(scene: "Scene") -> Iterator[str]:
     yield from _symmetry(scene)
     yield from _boundaries(scene)
     yield from time_violations(scene)
+    yield from accuracy_violations(scene)
 
 
 def _shape(scene: "Scene") -> Iterator[str]:

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
+from porolub.scene.accuracy import Accuracy
 from porolub.scene.base import Section, Whole, broken
 from porolub.scene.conditions import Boundary, Conventions
 from porolub.scene.discretisation import Mesh
@@ -43,6 +44,7 @@ class Scene(Section):
     motion: Motion | None = None
     load: Load | None = None
     time: Time | None = None
+    accuracy: Accuracy | None = None
     conventions: Conventions = Conventions()
     solver: Solver = Solver()
     boundary: dict[str, Boundary] = Field(default_factory=dict)

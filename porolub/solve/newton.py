@@ -52,6 +52,12 @@ class Clock:
     def elapsed(self) -> float:
         return time.perf_counter() - self.start
 
+    def include(self, before: Clock) -> None:
+        """Count what was spent before, too."""
+        self.start = before.start
+        for what, spent in before.spent.items():
+            self.spent[what] += spent
+
 
 @dataclass
 class NewtonResult:
@@ -86,10 +92,12 @@ class Newton:
         self.reuse, self.reused = False, 0  # matrices of the iteration before
         self.abort_below = 0.0  # lowest J tolerated
         self.patience = 1000  # strongly shortened steps tolerated before giving up
+        self.hope = 1000  # iterations tolerated in which no update is smaller than all before
         self.given: Callable[[PETSc.Vec], bool] = lambda x: False  # puts in a state known already
         # of the iteration under way
         self._updates: dict[str, float] = {}
         self._damping, self._stalled, self._shortened = 1.0, 0, 0
+        self._smallest, self._hopeless = float("inf"), 0  # update, iterations since
         self._size = self._size_before = float("inf")  # of the last two updates, unshortened
         self._stale = False  # whether the last of them came from the matrix of the one before
         self._largest: dict[str, float] = {}  # residual so far, by field
@@ -181,6 +189,7 @@ class Newton:
             self._updates, self._damping, self._largest = {}, 1.0, {}
             self._size = self._size_before = np.inf
             self._stalled, self._previous_size, self._shortened = 0, np.inf, 0
+            self._smallest, self._hopeless = np.inf, 0
             self._why, self._place = "", None
             if self.given(snes.getSolution()):
                 return CONVERGED
@@ -203,6 +212,11 @@ class Newton:
         self._shortened += self._damping < SHORT
         if self._shortened > self.patience:
             self._why = "Newton's steps stay implausibly long"
+            return DIVERGED
+        self._hopeless = 0 if size < self._smallest else self._hopeless + 1
+        self._smallest = min(size, self._smallest)
+        if self._hopeless > self.hope:
+            self._why = "Newton's steps do not get smaller"
             return DIVERGED
         if self._damping == 1.0 and (self._close(size) or self._rounding(size, record)):
             return CONVERGED

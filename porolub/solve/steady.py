@@ -40,6 +40,7 @@ FAILURES_ALLOWED = 2  # meshes without a steady state before the sequence is giv
 ALONE = {2: 3000, 3: 300}  # cells below which a mesh of the sequence is left to one rank
 EDGE_SIZE = 10e-6  # m; of the smallest elements unless the scene says
 EDGES_MOVED = 0.1  # thicknesses a place may lie off the one the mesh was refined toward
+HOPE = 3  # iterations from neighbours in which no update gets smaller
 WARM_ITERATIONS = 15  # of Newton from a blend of neighbours, before it is given up
 COARSEST = {2: 80, 3: 40}  # elements along the surface on the first mesh, at most
 
@@ -182,7 +183,7 @@ class SteadySolver:
     def _warm(self, model: Model, x: PETSc.Vec) -> tuple[PETSc.Vec, NewtonResult] | None:
         """Newton from x, in place; None, and x freed, if it does not converge soon."""
         newton = Newton(model.system, self.clock, self.observe, self._stop, linear=Linear(model))
-        newton.patience = PATIENCE
+        newton.patience, newton.hope = PATIENCE, HOPE
         result = Starter(model, newton).straight(x, "from neighbours", WARM_ITERATIONS)
         self.newton_iterations += newton.iterations
         self.linear_iterations += newton.linear_iterations
@@ -319,6 +320,15 @@ class SteadySolver:
                name: str) -> tuple[PETSc.Vec, NewtonResult, int]:
         """State, result and rejected steps on one mesh, from the coarser solution or from zero."""
         starter = Starter(model, newton)
+        if data is None and self.neighbours:  # a coarse mesh forgives more than the scene's own
+            x = blended(model, self.neighbours)
+            patience, hope = newton.patience, newton.hope
+            newton.patience, newton.hope = PATIENCE, HOPE
+            result = starter.straight(x, name, WARM_ITERATIONS)
+            newton.patience, newton.hope = patience, hope
+            if result.converged:
+                return x, result, starter.rejected
+            x.destroy()
         if data is not None:
             x = restore(model, data)
             patience, newton.patience = newton.patience, PATIENCE

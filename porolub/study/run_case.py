@@ -22,10 +22,11 @@ from porolub.io.directory import write_results
 from porolub.io.progress import Progress
 from porolub.io.solution import read_solution, write_solution
 from porolub.run_transient import Recorder, begin, recorded
+from porolub.solve.accurate import chosen_in_time, steady_solver
 from porolub.solve.estimate import relative
 from porolub.solve.neighbours import Neighbour, solution_of
 from porolub.solve.options import UnusedOption
-from porolub.solve.steady import Outcome, SteadySolver
+from porolub.solve.steady import Outcome
 from porolub.solve.transient import TransientSolver
 from porolub.study.case_directories import case_directory, claim
 from porolub.study.outcome import in_words
@@ -111,18 +112,20 @@ class Cases:
             with _in_trouble():
                 claim(directory, task.case, comm)
         if scene.time is None:
-            steady = SteadySolver(scene, comm, user_options=self.user_options,
-                                  stop=self.interrupt.raise_if_asked,
-                                  neighbours=self._neighbours(task))
+            steady = steady_solver(scene, comm, user_options=self.user_options,
+                                   stop=self.interrupt.raise_if_asked,
+                                   neighbours=self._neighbours(task))
             outcome = steady.solve()
             with _in_trouble():
-                summary = self._finish(scene, outcome, directory)
+                summary = self._finish(outcome.model.scene, outcome, directory)
                 if task.wanted and outcome.converged and outcome.model.mesh.shape is not None:
                     errors = relative(outcome.errors, summary)
                     state = solution_of(outcome.model, outcome.x, errors)
                     write_solution(self._state(task.case.key), state, comm)
             outcome.destroy()
             return summary, task.starts if steady.warm else ()
+        if scene.accuracy is not None:
+            scene = chosen_in_time(scene, comm, self.interrupt.raise_if_asked)
         if self.results:
             with _in_trouble():
                 recorder = Recorder(directory, scene, comm, Progress("quiet"),
