@@ -117,7 +117,7 @@ def run(
 ) -> None:
     """Compute a scene and write the results."""
     from porolub.scene import load_scene
-    from porolub.study.sweep_file import is_sweep
+    from porolub.study.plan.sweep_file import is_sweep
 
     if is_sweep(scene):
         raise SceneError(f"{scene}: this is a sweep file; porolub sweep {scene} runs it.")
@@ -166,8 +166,8 @@ def sweep(
 
     The same command again goes on where it was stopped: cases that are done are not repeated.
     """
+    from porolub.study.plan.sweep_file import load_sweep
     from porolub.study.sweep import run_sweep
-    from porolub.study.sweep_file import load_sweep
 
     loaded = load_sweep(file, overrides or ())
     out_dir = out if out is not None else Path("results") / file.stem
@@ -217,7 +217,7 @@ def accuracy(
 
     Cases run side by side, one rank each; the same command again goes on where it was stopped.
     """
-    from porolub.study.sweep_file import is_sweep
+    from porolub.study.plan.sweep_file import is_sweep
 
     if is_sweep(scene):
         raise SceneError(f"{scene}: this is a sweep file; porolub accuracy needs a scene.")
@@ -226,11 +226,11 @@ def accuracy(
         if vary or quantity:
             option = "--vary" if vary else "--quantity"
             raise SceneError(f"{option} has no meaning with --effects.")
-        from porolub.study.effects_study import run_effects
+        from porolub.study.accuracy.effects_study import run_effects
 
         out_dir = out if out is not None else Path("results") / f"{scene.stem}_effects"
         raise typer.Exit(run_effects(scene, changes, out_dir, petsc, quiet))
-    from porolub.study.accuracy import run_accuracy
+    from porolub.study.accuracy.study import run_accuracy
 
     out_dir = out if out is not None else Path("results") / f"{scene.stem}_accuracy"
     raise typer.Exit(run_accuracy(scene, changes, out_dir, vary, levels, quantity, petsc, quiet))
@@ -244,12 +244,12 @@ def check(scene: SceneOrSweep, overrides: Overrides = None) -> None:
     """
     from porolub.scene import load_scene
     from porolub.scene.report import report
-    from porolub.study.sweep_file import is_sweep
+    from porolub.study.plan.sweep_file import is_sweep
 
     if is_sweep(scene):
-        from porolub.study.cases import cases_of
-        from porolub.study.sweep_file import load_sweep
-        from porolub.study.sweep_report import report_sweep
+        from porolub.study.plan.cases import cases_of
+        from porolub.study.plan.sweep_file import load_sweep
+        from porolub.study.plan.sweep_report import report_sweep
 
         sweep_of_file = load_sweep(scene, overrides or ())
         cases = cases_of(sweep_of_file)
@@ -280,7 +280,7 @@ def plot(
     if not directory.is_dir():
         raise SceneError(f"{directory}: there is no such directory.")
     from porolub.io.plots import plot_directory
-    from porolub.study.sweep_plots import is_sweep_directory, plot_sweep
+    from porolub.study.figures.sweep_plots import is_sweep_directory, plot_sweep
 
     if is_sweep_directory(directory):
         if period is not None or animate:

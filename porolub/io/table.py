@@ -39,6 +39,8 @@ ESTIMATED = {
     "pressure_max": "highest fluid pressure",
 }
 """Numbers whose estimated errors are shown, and what they are called there."""
+VACUUM = -101325.0
+"""Pa, beside the atmosphere's pressure, which is 0 here."""
 ROUNDING = 1e-9
 """Relative; what is prescribed has no more error than that."""
 
@@ -142,6 +144,8 @@ def _layer(summary: Summary) -> Iterator[Row]:
     lowest, highest = number(summary, "pressure_min"), number(summary, "pressure_max")
     if highest is not None:
         remark = "" if lowest is None else f"lowest {KILOPASCAL.text(lowest)}"
+        if lowest is not None and lowest < VACUUM:
+            remark += ": below vacuum, where fluid would cavitate, which is not modelled"
         yield "highest fluid pressure", KILOPASCAL.text(highest), remark
     yield from _simple(
         summary,

@@ -17,20 +17,20 @@ from porolub.interrupt import Interrupt
 from porolub.io.atomic import replacing, reported
 from porolub.io.log import close_logging, setup_logging
 from porolub.solve.options import forget_options, set_options
-from porolub.study.case_directories import arrange, with_results
-from porolub.study.cases import Case, cases_of
-from porolub.study.definition import Sweep
-from porolub.study.journal import JOURNAL, Journal, rows_of
-from porolub.study.lock import Lock
-from porolub.study.outcome import in_words, one_line
-from porolub.study.parts import part_of, read_part
-from porolub.study.progress import SweepProgress
-from porolub.study.queue import Queue
-from porolub.study.run_case import STATES, Cases, Trouble
-from porolub.study.sweep_file import write_resolved_sweep
-from porolub.study.sweep_plots import plot_sweep
-from porolub.study.table import write_table
-from porolub.study.work import Row, Work
+from porolub.study.figures.sweep_plots import plot_sweep
+from porolub.study.plan.cases import Case, cases_of
+from porolub.study.plan.definition import Sweep
+from porolub.study.plan.parts import part_of, read_part
+from porolub.study.plan.sweep_file import write_resolved_sweep
+from porolub.study.work.case_directories import arrange, with_results
+from porolub.study.work.journal import JOURNAL, Journal, rows_of
+from porolub.study.work.lock import Lock
+from porolub.study.work.outcome import in_words, one_line
+from porolub.study.work.progress import SweepProgress
+from porolub.study.work.queue import Queue
+from porolub.study.work.run_case import STATES, Cases, Trouble
+from porolub.study.work.table import write_table
+from porolub.study.work.tasks import Row, Work
 from porolub.together import on_root
 
 log = logging.getLogger(__name__)

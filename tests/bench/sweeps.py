@@ -19,7 +19,7 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from porolub.study.table import comparable, read_table
+from porolub.study.work.table import comparable, read_table
 
 PROGRAM = Path(sys.executable).with_name("porolub")
 

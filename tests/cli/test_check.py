@@ -8,7 +8,7 @@ import pytest
 from typer.testing import CliRunner
 
 from porolub.cli import app
-from porolub.study.sweep_file import is_sweep
+from porolub.study.plan.sweep_file import is_sweep
 
 JOBS = Path(__file__).parents[2] / "jobs"
 CASE1 = str(JOBS / "case1.toml")

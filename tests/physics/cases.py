@@ -104,7 +104,7 @@ def run(asked: Scene) -> Run:
     def after(record: StepRecord) -> None:
         d, scales = Derived(solver.model, solver.stepper.x), solver.model.scales
         done.gaps.append(float(d.gap()[d.mine].min()) * scales.length)
-        done.pressures.append(float(d.contact_pressure()[d.mine].min()) * scales.pressure)
+        done.pressures.append(float(d.nodal("l")[d.mine, 0].min()) * scales.pressure)
 
     watch = Watch(step=after, rejected=lambda *what: done.rejections.append(what))
     solver = TransientSolver(asked, MPI.COMM_SELF, watch)

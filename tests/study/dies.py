@@ -18,7 +18,7 @@ from porolub.cli import main
 from porolub.io import hdf5
 from porolub.solve.newton import Newton
 from porolub.study import sweep
-from porolub.study.journal import Journal
+from porolub.study.work.journal import Journal
 
 where, count = sys.argv.pop(1), int(sys.argv.pop(1))
 MINE = MPI.COMM_WORLD.rank == (int(sys.argv.pop(1)) if sys.argv[1].isdigit() else 0)

@@ -13,7 +13,7 @@ import tomli_w
 from typer.testing import CliRunner, Result
 
 from porolub.cli import app
-from porolub.study.table import Table, comparable, read_table
+from porolub.study.work.table import Table, comparable, read_table
 from tests.run.output import JOBS
 from tests.study.sweeps import Tables, linear, log
 

@@ -7,8 +7,8 @@ from typing import cast
 from hypothesis import strategies as st
 
 from porolub.scene import Scene
-from porolub.study.cases import Case
-from porolub.study.neighbours import with_neighbours
+from porolub.study.plan.cases import Case
+from porolub.study.plan.neighbours import with_neighbours
 
 Places = Sequence[float | None]
 SCENE = cast(Scene, object())  # any: nothing is asked of it

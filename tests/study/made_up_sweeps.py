@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
-from porolub.study.axis import Axis
-from porolub.study.regimes import regime
-from porolub.study.table import Table, read_table, write_table
+from porolub.study.plan.axis import Axis
+from porolub.study.work.regimes import regime
+from porolub.study.work.table import Table, read_table, write_table
 
 Summary = dict[str, Any]
 VISCOSITY, RADIUS, SOLID_FRICTION = 1e-3, 0.1, 0.45

@@ -12,8 +12,8 @@ from pathlib import Path
 from mpi4py import MPI
 
 from porolub.errors import PorolubError, SolveError
-from porolub.study.queue import Queue
-from porolub.study.work import Work
+from porolub.study.work.queue import Queue
+from porolub.study.work.tasks import Work
 from tests.study.grids import grid
 
 COMM = MPI.COMM_WORLD

@@ -4,8 +4,8 @@ from typing import Any
 
 import numpy as np
 
-from porolub.study.axis import Axis
-from porolub.study.definition import Sweep
+from porolub.study.plan.axis import Axis
+from porolub.study.plan.definition import Sweep
 
 APPROACHES = {"0 um": 0.0, "5 um": 5e-6, "20 um": 2e-5, "50 um": 5e-5}
 GRADINGS = ("none", "contact")

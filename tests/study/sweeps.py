@@ -5,9 +5,9 @@ from typing import Any
 
 import tomli_w
 
-from porolub.study.cases import Case, cases_of
-from porolub.study.definition import Sweep
-from porolub.study.sweep_file import load_sweep
+from porolub.study.plan.cases import Case, cases_of
+from porolub.study.plan.definition import Sweep
+from porolub.study.plan.sweep_file import load_sweep
 from tests.scene.scenes import ROLLING
 
 Tables = dict[str, Any]

@@ -14,7 +14,7 @@ from porolub.io.history import read_history
 from porolub.io.summary import read_summary
 from porolub.run import run_scene
 from porolub.scene import load_scene
-from porolub.study.accuracy_files import COLUMNS
+from porolub.study.accuracy.files import COLUMNS
 from tests.mpirun import mpirun
 from tests.run.output import JOBS
 from tests.study.drills import journal

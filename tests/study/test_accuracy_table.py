@@ -6,18 +6,18 @@ from matplotlib.figure import Figure
 from rich.console import Console
 
 from porolub.io.words import ONE
-from porolub.study.accuracy import Study
-from porolub.study.accuracy_table import (
+from porolub.study.accuracy.draw_precision import draw_precision
+from porolub.study.accuracy.measured import Trial, measured
+from porolub.study.accuracy.recommend import advise
+from porolub.study.accuracy.strategies import Setting
+from porolub.study.accuracy.study import Study
+from porolub.study.accuracy.tables import (
     accuracy_table,
     advice_lines,
     error_text,
     percent,
     remarks,
 )
-from porolub.study.draw_precision import draw_precision
-from porolub.study.measured import Trial, measured
-from porolub.study.recommend import advise
-from porolub.study.strategies import Setting
 
 LIMITS = {"friction_coefficient": 0.2, "load_fluid": 860.0}
 

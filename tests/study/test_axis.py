@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porolub.errors import SceneError
-from porolub.study.amounts import amount
-from porolub.study.axis import Axis, axis_of
-from porolub.study.sweep_schema import AxisTable
+from porolub.study.plan.amounts import amount
+from porolub.study.plan.axis import Axis, axis_of
+from porolub.study.plan.sweep_schema import AxisTable
 from tests.study.sweeps import linear, log
 
 

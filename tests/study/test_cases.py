@@ -8,7 +8,7 @@ import pytest
 
 from porolub.errors import SceneError
 from porolub.scene import scene_from_dict
-from porolub.study.cases import cases_of
+from porolub.study.plan.cases import cases_of
 from tests.scene.scenes import ROLLING, changed
 from tests.study.sweeps import cases_along, linear, log, sweep_of
 

@@ -5,7 +5,13 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porolub.study.convergence import ORDERS, SAFETY, UNCONFIRMED, extrapolated, observed_order
+from porolub.study.accuracy.convergence import (
+    ORDERS,
+    SAFETY,
+    UNCONFIRMED,
+    extrapolated,
+    observed_order,
+)
 
 LIMITS = st.floats(-1e3, 1e3)
 SLOPES = st.floats(0.1, 1e3) | st.floats(-1e3, -0.1)

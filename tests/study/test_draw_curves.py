@@ -5,9 +5,9 @@ import pytest
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from porolub.study.draw_curves import draw_curves
-from porolub.study.table import Table
-from porolub.study.view import View
+from porolub.study.figures.draw_curves import draw_curves
+from porolub.study.figures.view import View
+from porolub.study.work.table import Table
 from tests.study.made_up_sweeps import (
     LOADS,
     axis,

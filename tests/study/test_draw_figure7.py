@@ -3,9 +3,9 @@
 import numpy as np
 from matplotlib.figure import Figure
 
-from porolub.study.draw_figure7 import draw_figure7
-from porolub.study.table import Table
-from porolub.study.view import View
+from porolub.study.figures.draw_figure7 import draw_figure7
+from porolub.study.figures.view import View
+from porolub.study.work.table import Table
 from tests.study.made_up_sweeps import LOADS, axis, by_load, by_speed_and_load, case, made_up
 
 

@@ -9,11 +9,11 @@ from matplotlib.colors import to_rgba
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from porolub.study.draw_regimes import COLOURS
-from porolub.study.draw_stribeck import draw_stribeck, stribeck_lines
-from porolub.study.regimes import CRITERIA, REGIMES
-from porolub.study.table import Table
-from porolub.study.view import View
+from porolub.study.figures.draw_regimes import COLOURS
+from porolub.study.figures.draw_stribeck import draw_stribeck, stribeck_lines
+from porolub.study.figures.view import View
+from porolub.study.work.regimes import CRITERIA, REGIMES
+from porolub.study.work.table import Table
 from tests.study.made_up_sweeps import (
     LOADS,
     SPEEDS,

@@ -6,8 +6,8 @@ from matplotlib.axes import Axes
 from matplotlib.contour import QuadContourSet
 from matplotlib.figure import Figure
 
-from porolub.study.draw_map import draw_map
-from porolub.study.draw_quantities import (
+from porolub.study.figures.draw_map import draw_map
+from porolub.study.figures.draw_quantities import (
     CONTACT_LENGTH,
     FILM_MIN,
     FLUID_SHARE,
@@ -15,10 +15,10 @@ from porolub.study.draw_quantities import (
     PRESSURE_MAX,
     Quantity,
 )
-from porolub.study.map_grid import Grid, roomiest
-from porolub.study.regimes import REGIMES
-from porolub.study.table import Table
-from porolub.study.view import View
+from porolub.study.figures.map_grid import Grid, roomiest
+from porolub.study.figures.view import View
+from porolub.study.work.regimes import REGIMES
+from porolub.study.work.table import Table
 from tests.study.made_up_sweeps import (
     LOADS,
     SPEEDS,

@@ -7,10 +7,10 @@ from hypothesis import given
 
 from porolub.errors import SceneError
 from porolub.scene import Scene, effects, load_scene, scene_from_dict
-from porolub.study.cases import cases_of
-from porolub.study.definition import Sweep
-from porolub.study.effect_steps import effect_steps
-from porolub.study.named_axis import named_axis
+from porolub.study.accuracy.effect_steps import effect_steps
+from porolub.study.plan.cases import cases_of
+from porolub.study.plan.definition import Sweep
+from porolub.study.plan.named_axis import named_axis
 from tests.run.output import JOBS
 from tests.scene.scenes import CUBE, ROLLING, changed, scene_tables
 

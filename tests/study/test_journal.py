@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from porolub.errors import SceneError, SolveError
-from porolub.study.journal import Journal, read_rows, rows_of
+from porolub.study.work.journal import Journal, read_rows, rows_of
 
 
 def row(key: str, **more: Any) -> dict[str, Any]:
@@ -183,7 +183,7 @@ def test_what_could_not_be_taken_back_is_cut_off_later(
 APPENDS = """
 import sys
 from pathlib import Path
-from porolub.study.journal import Journal
+from porolub.study.work.journal import Journal
 
 journal = Journal(Path(sys.argv[1]))
 for k in range(10**6):

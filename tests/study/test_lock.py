@@ -11,13 +11,13 @@ from pathlib import Path
 import pytest
 
 from porolub.errors import SceneError, SolveError
-from porolub.study import lock as module
-from porolub.study.lock import Lock
+from porolub.study.work import lock as module
+from porolub.study.work.lock import Lock
 
 HOLDS = """
 import sys
 from pathlib import Path
-from porolub.study.lock import Lock
+from porolub.study.work.lock import Lock
 
 with Lock(Path(sys.argv[1])):
     print("held", flush=True)
@@ -119,7 +119,7 @@ import sys
 from pathlib import Path
 from mpi4py import MPI
 from porolub.errors import SceneError
-from porolub.study.lock import Lock
+from porolub.study.work.lock import Lock
 
 comm = MPI.COMM_WORLD
 for name in ("free", "held"):

@@ -5,9 +5,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from porolub.study.measured import Trial, measured, trial
-from porolub.study.recommend import advise
-from porolub.study.strategies import Setting
+from porolub.study.accuracy.measured import Trial, measured, trial
+from porolub.study.accuracy.recommend import advise
+from porolub.study.accuracy.strategies import Setting
 
 LIMIT = 5.0
 SIZES = (1.0, 0.5, 0.25, 0.125)

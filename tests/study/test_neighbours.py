@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from porolub.study.cases import Case
-from porolub.study.neighbours import bisection, worlds
+from porolub.study.plan.cases import Case
+from porolub.study.plan.neighbours import bisection, worlds
 from tests.study.grids import grid, grids
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from porolub.solve.report import StepRecord
-from porolub.study.over_time import over_time
+from porolub.study.work.over_time import over_time
 
 
 def records(times: np.ndarray, **columns: np.ndarray) -> list[StepRecord]:

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porolub.errors import SceneError
-from porolub.study.cases import Case
-from porolub.study.parts import part_of, read_part
+from porolub.study.plan.cases import Case
+from porolub.study.plan.parts import part_of, read_part
 from tests.study.grids import grid, grids
 
 

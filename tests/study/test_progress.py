@@ -9,10 +9,10 @@ import pytest
 from rich.console import Console
 
 from porolub.io.log import close_logging, setup_logging
-from porolub.study import progress as module
-from porolub.study.label import axis_text, case_label
-from porolub.study.progress import SweepProgress
-from porolub.study.sweep_pace import SweepPace
+from porolub.study.work import progress as module
+from porolub.study.work.label import axis_text, case_label
+from porolub.study.work.pace import SweepPace
+from porolub.study.work.progress import SweepProgress
 from tests.study.rows import row
 
 UNITS = {"approach": "m"}

@@ -6,7 +6,12 @@ import pytest
 
 from porolub.errors import SceneError
 from porolub.scene import Scene, scene_from_dict
-from porolub.study.quantities import default_quantities, estimate_of, read_quantities, value_of
+from porolub.study.accuracy.quantities import (
+    default_quantities,
+    estimate_of,
+    read_quantities,
+    value_of,
+)
 from tests.scene.scenes import ROLLING, changed
 
 SWINGING = {"mean": "0 rad/s", "amplitude": "1 rad/s", "frequency": "1 Hz"}

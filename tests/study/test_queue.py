@@ -8,8 +8,8 @@ import pytest
 from mpi4py import MPI
 
 from porolub.errors import SceneError
-from porolub.study.queue import Queue
-from porolub.study.work import Work
+from porolub.study.work.queue import Queue
+from porolub.study.work.tasks import Work
 from tests.study.grids import grid
 
 SCRIPT = Path(__file__).with_name("queue_ranks.py")

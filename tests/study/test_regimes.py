@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porolub.scene import Scene, scene_from_dict
-from porolub.study.regimes import CRITERIA, REGIMES, regime, sommerfeld_number
+from porolub.study.work.regimes import CRITERIA, REGIMES, regime, sommerfeld_number
 from tests.io.conftest import scene_tables
 
 BARREL = {"shape": "barrel", "outer_radius": "100 mm", "thickness": "1 mm", "half_angle": "5 deg",

@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porolub.study.cases import Case, cases_of
-from porolub.study.sweep_file import load_sweep
+from porolub.study.plan.cases import Case, cases_of
+from porolub.study.plan.sweep_file import load_sweep
 
 JOBS = Path(__file__).parents[2] / "jobs"
 

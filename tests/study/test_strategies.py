@@ -6,10 +6,10 @@ import pytest
 
 from porolub.errors import SceneError
 from porolub.scene import Scene, load_scene, scene_from_dict
-from porolub.study.cases import cases_of
-from porolub.study.definition import Sweep
-from porolub.study.named_axis import named_axis
-from porolub.study.strategies import Setting, read_varied, settings_of
+from porolub.study.accuracy.strategies import Setting, read_varied, settings_of
+from porolub.study.plan.cases import cases_of
+from porolub.study.plan.definition import Sweep
+from porolub.study.plan.named_axis import named_axis
 from tests.run.output import JOBS
 from tests.scene.scenes import CUBE, ROLLING, changed
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from porolub.study.table import Table, read_table
+from porolub.study.work.table import Table, read_table
 from tests.run.output import JOBS
 from tests.study import small_disk
 from tests.study.drills import (

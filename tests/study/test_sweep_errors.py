@@ -10,7 +10,7 @@ import pytest
 import tomli_w
 
 from porolub.solve.steady import SteadySolver
-from porolub.study.table import read_table
+from porolub.study.work.table import read_table
 from tests.study.drills import CLI, PLOTS, forces, journal, sweep, sweep_file
 from tests.study.sweeps import Tables
 
@@ -148,7 +148,8 @@ def test_on_ranks_too(run_mpi, tmp_path: Path) -> None:
 ONE_FAILS = """
 import sys
 from mpi4py import MPI
-import porolub.study.run_case
+import porolub.solve.accurate
+import porolub.study.work.run_case
 from porolub.cli import main
 from porolub.solve.steady import SteadySolver
 
@@ -158,8 +159,8 @@ class OneFails(SteadySolver):
             raise ZeroDivisionError("on one rank alone")
         return super().solve()
 
-porolub.study.run_case.SteadySolver = OneFails
-porolub.study.run_case.PATIENCE = 1.0
+porolub.solve.accurate.SteadySolver = OneFails
+porolub.study.work.run_case.PATIENCE = 1.0
 main()
 """
 

@@ -8,8 +8,8 @@ import tomli_w
 
 from porolub.errors import SceneError
 from porolub.scene import scene_from_dict
-from porolub.study.cases import cases_of
-from porolub.study.sweep_file import (
+from porolub.study.plan.cases import cases_of
+from porolub.study.plan.sweep_file import (
     is_sweep,
     load_sweep,
     read_resolved_sweep,

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from porolub.study.table import Table, read_table
+from porolub.study.work.table import Table, read_table
 from tests.run.transient import ITERATION, signalled
 from tests.study.drills import (
     PLOTS,

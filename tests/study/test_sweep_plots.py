@@ -13,10 +13,10 @@ from typer.testing import CliRunner
 
 from porolub.cli import app
 from porolub.errors import SceneError
-from porolub.study.draw_map import MAPPED
-from porolub.study.sweep_plots import MOST_MAPS, figures, is_sweep_directory, plot_sweep
-from porolub.study.table import Table, write_table
-from porolub.study.view import View
+from porolub.study.figures.draw_map import MAPPED
+from porolub.study.figures.sweep_plots import MOST_MAPS, figures, is_sweep_directory, plot_sweep
+from porolub.study.figures.view import View
+from porolub.study.work.table import Table, write_table
 from tests.study.made_up_sweeps import (
     LOADS,
     MadeUp,

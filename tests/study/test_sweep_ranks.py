@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from porolub.study.table import Table, read_table
+from porolub.study.work.table import Table, read_table
 from tests.study.drills import (
     PLOTS,
     computed,
@@ -20,7 +20,7 @@ RUN = """
 import sys
 from pathlib import Path
 import porolub.study.sweep as module
-from porolub.study.sweep_file import load_sweep
+from porolub.study.plan.sweep_file import load_sweep
 
 module.plot_sweep = lambda directory: []
 for out, ranks in zip(sys.argv[2::2], sys.argv[3::2]):

@@ -8,9 +8,9 @@ from rich.console import Console
 from typer.testing import CliRunner
 
 from porolub.cli import app
-from porolub.study.cases import cases_of
-from porolub.study.sweep_cost import STEPS, sweep_cost
-from porolub.study.sweep_report import report_sweep
+from porolub.study.plan.cases import cases_of
+from porolub.study.plan.sweep_cost import STEPS, sweep_cost
+from porolub.study.plan.sweep_report import report_sweep
 from tests.scene.scenes import ROLLING, changed
 from tests.study.sweeps import Tables, linear, log, sweep_of, write_sweep
 

@@ -10,7 +10,7 @@ from porolub.io.history import read_history
 from porolub.io.summary import read_summary
 from porolub.run import run_scene
 from porolub.scene import load_scene
-from porolub.study.table import read_table
+from porolub.study.work.table import read_table
 from tests.run.output import JOBS
 from tests.run.transient import same_frames
 from tests.study.drills import PLOTS, SMALL, forces, journal, no_remains, sweep, sweep_file

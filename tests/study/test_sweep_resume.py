@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from porolub.study.table import read_table
+from porolub.study.work.table import read_table
 from tests.study.drills import (
     PLOTS,
     computed,

@@ -9,7 +9,7 @@ import pytest
 from porolub.io.summary import read_summary
 from porolub.run import run_scene
 from porolub.scene import load_scene
-from porolub.study.table import read_table
+from porolub.study.work.table import read_table
 from tests.run.output import JOBS
 from tests.study.drills import (
     PLOTS,
@@ -84,7 +84,7 @@ def test_the_same_command_again_does_no_work(
     before = {name: (tmp_path / "here" / name).read_bytes()
               for name in ("journal.jsonl", "table.csv", "table.h5")}  # fmt: skip
     with monkeypatch.context() as patch:
-        patch.setattr("porolub.study.run_case.SteadySolver", None)
+        patch.setattr("porolub.solve.accurate.SteadySolver", None)
         result = sweep(file, tmp_path / "here", quiet=False)
     assert (result.exit_code, result.stderr) == (0, "")
     assert "3 of 3 cases need no work" in result.stdout

@@ -9,9 +9,9 @@ import pytest
 
 from porolub.errors import SceneError, SolveError
 from porolub.io.summary import ORDER
-from porolub.study.axis import Axis
-from porolub.study.columns import _UNITS, FACTS, NESTED, headings
-from porolub.study.table import comparable, read_table, write_table
+from porolub.study.plan.axis import Axis
+from porolub.study.work.columns import _UNITS, FACTS, NESTED, headings
+from porolub.study.work.table import comparable, read_table, write_table
 from tests.study.rows import APPROACHES, GRADINGS, row, sweep
 
 

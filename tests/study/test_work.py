@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porolub.errors import Interrupted, PorolubError, SolveError
-from porolub.study.cases import Case
-from porolub.study.work import End, Row, Task, Wait, Work
+from porolub.study.plan.cases import Case
+from porolub.study.work.tasks import End, Row, Task, Wait, Work
 from tests.study.grids import SCENE, grid, grids
 
 Parents = Mapping[int, tuple[tuple[int, float], ...]]

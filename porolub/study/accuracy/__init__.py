@@ -1,0 +1,1 @@
+"""What accuracy costs: settings of a scene as a sweep, their errors, advice."""

@@ -1,0 +1,1 @@
+"""What a sweep asks for: its file, axes, cases and their neighbours."""
