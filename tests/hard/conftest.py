@@ -4,15 +4,15 @@ from typing import Any
 
 from rich.console import Console
 
-from tests.hard.case import Verdict, Verdicts
-from tests.hard.matrix import print_matrix
-
 PROPERTY = "hard case"
 
 
 def pytest_terminal_summary(terminalreporter: Any) -> None:
     """Collected from the reports, so that it does not matter which process ran a case."""
-    found: dict[str, Verdicts] = {}
+    from tests.hard.case import Verdict  # these import MPI, which a conftest must not
+    from tests.hard.matrix import print_matrix
+
+    found: dict[str, dict[str, Verdict]] = {}
     for reports in terminalreporter.stats.values():
         for report in reports:
             for name, value in getattr(report, "user_properties", ()):

@@ -10,7 +10,7 @@ import pytest
 from porolub.errors import SceneError, SolveError
 from porolub.io.summary import ORDER
 from porolub.study.plan.axis import Axis
-from porolub.study.work.columns import _UNITS, FACTS, NESTED, headings
+from porolub.study.work.columns import _UNITS, FACTS, LIKE, NESTED, headings
 from porolub.study.work.table import comparable, read_table, write_table
 from tests.study.rows import APPROACHES, GRADINGS, row, sweep
 
@@ -177,7 +177,7 @@ def test_a_body_has_other_units(tmp_path: Path) -> None:
 
 def test_each_number_of_the_summary_has_a_unit_or_none_on_purpose() -> None:
     texts = {"status", "message", "effects", "versions"}
-    plain = {"load_ratio", "friction_coefficient", "friction_fluid", "jacobian_min",
+    plain = {*LIKE, "load_ratio", "friction_coefficient", "friction_fluid", "jacobian_min",
              "mass_balance_error", "load_balance_error", "dofs", "ranks", "newton_iterations",
              "linear_iterations", "time_steps", "rejected_steps"}  # fmt: skip
     assert set(ORDER) - texts - plain == set(_UNITS) - {"wall", "time"}

@@ -51,6 +51,9 @@ _UNITS = {
 }
 """SI units by key; two where they are those of a two- and of a three-dimensional scene."""
 
+LIKE = ("error_estimate",)
+"""Keys whose parts have the units of the numbers they are named after."""
+
 
 class Axis(Protocol):
     """What is asked of an axis of a sweep: porolub.study.plan.axis, or a stand-in."""
@@ -94,7 +97,8 @@ def units_of(columns: Iterable[str], axes: Sequence[Axis]) -> dict[str, str]:
     in_space = not set(IN_SPACE).isdisjoint(names)
     units = {}
     for name in names:
-        unit = _UNITS.get(name.split(".")[0], "")
+        key, _, rest = name.partition(".")
+        unit = _UNITS.get(rest if key in LIKE else key, "")
         units[name] = unit if isinstance(unit, str) else unit[in_space]
     units |= {heading: a.unit for heading, a in zip(headings(axes), axes, strict=True)}
     return {name: unit for name, unit in units.items() if unit}

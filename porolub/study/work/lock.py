@@ -22,13 +22,15 @@ from porolub.together import ALONE, on_root
 
 LOCK = ".lock"
 OWNER = ".lock.owner"
+PATIENCE = 5.0  # s
 
 
 class Lock:
     """Holds a directory while it is entered; rank 0 of ``comm`` does, for all. Collective.
 
-    Entering makes the directory if need be and never waits: it raises SceneError where another
-    process has it or where it cannot be written, SolveError where its disk is full; on all ranks.
+    Entering makes the directory if need be; it waits for a job that is being killed, whose ranks go
+    one after the other, and no longer: it raises SceneError where another process has it or where
+    it cannot be written, SolveError where its disk is full; on all ranks.
     """
 
     def __init__(self, directory: Path, comm: Any = ALONE) -> None:
@@ -58,7 +60,7 @@ class Lock:
         with reported(self.directory, "the files of a sweep"):
             lock = FileLock(self.directory / LOCK)
             try:
-                lock.acquire(timeout=0)
+                lock.acquire(timeout=PATIENCE)
             except Timeout:
                 raise SceneError(self._refusal()) from None
             try:
