@@ -320,7 +320,8 @@ class SteadySolver:
                name: str) -> tuple[PETSc.Vec, NewtonResult, int]:
         """State, result and rejected steps on one mesh, from the coarser solution or from zero."""
         starter = Starter(model, newton)
-        if data is None and self.neighbours:  # a coarse mesh forgives more than the scene's own
+        shared = model.mesh.comm.size == self.comm.size  # as the neighbours are
+        if data is None and self.neighbours and shared:  # a coarse mesh forgives more
             x = blended(model, self.neighbours)
             patience, hope = newton.patience, newton.hope
             newton.patience, newton.hope = PATIENCE, HOPE
