@@ -23,6 +23,8 @@ for variable in (
 ):
     os.environ[variable] = "1"  # before NumPy is imported
 os.environ.setdefault("MPLBACKEND", "Agg")
+# fonts as this environment has them: the home's list may be that of one which has gone since
+os.environ.setdefault("MPLCONFIGDIR", str(Path(sys.prefix, "var", "matplotlib")))
 if os.geteuid() == 0:
     os.environ["OMPI_ALLOW_RUN_AS_ROOT"] = os.environ["OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] = "1"
 
@@ -34,6 +36,12 @@ RunMPI = Callable[..., str]
 def pytest_xdist_auto_num_workers() -> int:
     """`-n auto`: a worker for each core this process may use."""
     return min(len(os.sched_getaffinity(0)), MOST_WORKERS)
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """List the fonts once, before workers do it side by side."""
+    if not hasattr(session.config, "workerinput"):
+        import matplotlib.font_manager  # noqa: F401
 
 
 @pytest.hookimpl(optionalhook=True)
