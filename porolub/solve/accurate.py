@@ -18,7 +18,6 @@ from porolub.solve.derived import scalars
 from porolub.solve.estimate import Numbers, RunErrors, relative
 from porolub.solve.neighbours import Neighbour
 from porolub.solve.newton import Clock
-from porolub.solve.report import NewtonRecord
 from porolub.solve.steady import COARSEST, Outcome, SteadySolver
 from porolub.solve.transient import TransientSolver
 
@@ -29,8 +28,6 @@ FEWEST = 3  # elements through the thickness and in depth
 IN_TIME = 0.5  # share of the allowed error that is the steps', in a run in time
 TRIALS = 4  # runs that look for a tolerance
 TIGHTEST, LOOSEST = 1e-7, 1e-2  # tolerances of a step
-
-Nobody = Callable[[NewtonRecord], None]
 
 
 def steady_solver(scene: Any, comm: Any, *args: Any, **options: Any
@@ -43,15 +40,11 @@ def steady_solver(scene: Any, comm: Any, *args: Any, **options: Any
 class AccurateSolver:
     """A SteadySolver of a scene with [accuracy], which chooses the mesh."""
 
-    def __init__(self, scene: Any, comm: Any,
-                 observe: Callable[[NewtonRecord], None] = lambda record: None,
-                 announce: Callable[[str, float], None] = lambda name, fraction: None,
-                 user_options: Sequence[str] = (),
-                 stop: Callable[[Any], str] = lambda comm: "",
-                 neighbours: Sequence[Neighbour] = ()) -> None:
+    def __init__(self, scene: Any, comm: Any, *hooks: Any, neighbours: Sequence[Neighbour] = (),
+                 **options: Any) -> None:
         """As SteadySolver; neighbours are not used, for their meshes may be too coarse."""
         self.scene, self.comm = scene, comm
-        self._rest = (observe, announce, user_options, stop)
+        self._hooks, self._options = hooks, options
         self.warm = False
 
     def solve(self, allowed: float = 1.0) -> Outcome:
@@ -64,7 +57,7 @@ class AccurateSolver:
         before: Clock | None = None
         while True:
             scene = _with_mesh(self.scene, count)
-            outcome = SteadySolver(scene, self.comm, *self._rest).solve()
+            outcome = SteadySolver(scene, self.comm, *self._hooks, **self._options).solve()
             newton += outcome.newton_iterations
             linear += outcome.linear_iterations
             rejected += outcome.rejected_steps

@@ -65,6 +65,20 @@ class Starter:
         self.model.system.steady()
         return self.newton.solve(x, stage, 1.0, max_iterations=max_iterations)
 
+    def tried(self, x: PETSc.Vec, stage: str, max_iterations: int = 25, hope: int | None = None
+              ) -> NewtonResult:
+        """Steady Newton from a guess x, in place, given up where it turns out to be a bad one.
+
+        ``hope``: iterations tolerated in which no update gets smaller (None: any number).
+        """
+        newton = self.newton
+        before = newton.patience, newton.hope
+        newton.patience = PATIENCE
+        newton.hope = before[1] if hope is None else hope
+        result = self.straight(x, stage, max_iterations)
+        newton.patience, newton.hope = before
+        return result
+
     def ramped(self, x: PETSc.Vec) -> NewtonResult:
         """For a dry scene, which has no time to start up in: the load first, then its friction.
 

@@ -30,7 +30,7 @@ from porolub.solve.options import refuse_unused_together, set_options
 from porolub.solve.place import place_in_words
 from porolub.solve.report import NewtonRecord
 from porolub.solve.scales import Scales
-from porolub.solve.startup import LIFTED, PATIENCE, PRESSED_IN, Starter, StartUp
+from porolub.solve.startup import LIFTED, PRESSED_IN, Starter, StartUp
 from porolub.solve.surface import typical_thickness
 from porolub.solve.transfer import Snapshot, restore, snapshot
 from porolub.solve.zones import contact_edges
@@ -183,8 +183,7 @@ class SteadySolver:
     def _warm(self, model: Model, x: PETSc.Vec) -> tuple[PETSc.Vec, NewtonResult] | None:
         """Newton from x, in place; None, and x freed, if it does not converge soon."""
         newton = Newton(model.system, self.clock, self.observe, self._stop, linear=Linear(model))
-        newton.patience, newton.hope = PATIENCE, HOPE
-        result = Starter(model, newton).straight(x, "from neighbours", WARM_ITERATIONS)
+        result = Starter(model, newton).tried(x, "from neighbours", WARM_ITERATIONS, HOPE)
         self.newton_iterations += newton.iterations
         self.linear_iterations += newton.linear_iterations
         newton.destroy()
@@ -323,18 +322,13 @@ class SteadySolver:
         shared = model.mesh.comm.size == self.comm.size  # as the neighbours are
         if data is None and self.neighbours and shared:  # a coarse mesh forgives more
             x = blended(model, self.neighbours)
-            patience, hope = newton.patience, newton.hope
-            newton.patience, newton.hope = PATIENCE, HOPE
-            result = starter.straight(x, name, WARM_ITERATIONS)
-            newton.patience, newton.hope = patience, hope
+            result = starter.tried(x, name, WARM_ITERATIONS, HOPE)
             if result.converged:
                 return x, result, starter.rejected
             x.destroy()
         if data is not None:
             x = restore(model, data)
-            patience, newton.patience = newton.patience, PATIENCE
-            result = starter.straight(x, name)
-            newton.patience = patience
+            result = starter.tried(x, name)
             if result.converged:
                 return x, result, starter.rejected
             x.destroy()

@@ -7,7 +7,7 @@ import meshio
 import numpy as np
 from numpy.typing import NDArray
 
-from tests.physics.mesh_files import SIDES
+from tests.physics.mesh_files import write_cells
 
 Array = NDArray[np.float64]
 OUTER, THICKNESS, HALF_ANGLE = 100e-3, 1e-3, math.radians(5.0)  # those of Case 1
@@ -38,24 +38,3 @@ def lean_of(path: Path) -> float:
     cosine = np.einsum("kd,kd->k", side, outward) / (
         np.linalg.norm(side, axis=1) * np.linalg.norm(outward, axis=1))
     return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))).max())
-
-
-def write_cells(path: Path, x: Array, y: Array) -> Path:
-    """x, y: (2 along + 1, 2 across + 1) places of the nodes, across counted from the surface, m."""
-    n = np.arange(x.size).reshape(x.shape)
-    low, mid, high = slice(0, -1, 2), slice(1, None, 2), slice(2, None, 2)
-    around = [(low, low), (high, low), (high, high), (low, high),
-              (mid, low), (high, mid), (mid, high), (low, mid), (mid, mid)]
-    cells = np.stack([n[pick].ravel() for pick in around], axis=1)
-    lines = {"inlet": n[0], "outlet": n[-1], "lubricated": n[:, 0], "bone": n[:, -1]}
-    sides = [np.stack([row[low], row[high], row[mid]], axis=1) for row in lines.values()]
-    tags = [np.full(len(side), SIDES[name]) for name, side in zip(lines, sides, strict=True)]
-    groups = [np.concatenate(tags), np.full(len(cells), 9)]
-    meshio.Mesh(
-        np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]),
-        [("line3", np.vstack(sides)), ("quad9", cells)],
-        cell_data={"gmsh:physical": groups, "gmsh:geometrical": groups},
-        field_data={**{name: np.array([tag, 1]) for name, tag in SIDES.items()},
-                    "layer": np.array([9, 2])},
-    ).write(path, file_format="gmsh22", binary=False)
-    return path

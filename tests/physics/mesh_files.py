@@ -32,7 +32,12 @@ def layer_file(path: Path, x: Array, y: Array, surface: Callable[[Array], Array]
     """
     X, Y = np.meshgrid(_with_middles(x), _with_middles(y), indexing="ij")
     Y = Y + surface(X) * (1.0 - Y / y[-1])
-    n = np.arange(X.size).reshape(X.shape)
+    return write_cells(path, X, Y)
+
+
+def write_cells(path: Path, x: Array, y: Array) -> Path:
+    """x, y: (2 along + 1, 2 across + 1) places of the nodes, across counted from the surface, m."""
+    n = np.arange(x.size).reshape(x.shape)
     low, mid, high = slice(0, -1, 2), slice(1, None, 2), slice(2, None, 2)
     around = [(low, low), (high, low), (high, high), (low, high),
               (mid, low), (high, mid), (mid, high), (low, mid), (mid, mid)]
@@ -42,7 +47,7 @@ def layer_file(path: Path, x: Array, y: Array, surface: Callable[[Array], Array]
     tags = [np.full(len(side), SIDES[name]) for name, side in zip(lines, sides, strict=True)]
     groups = [np.concatenate(tags), np.full(len(cells), 9)]
     meshio.Mesh(
-        np.column_stack([X.ravel(), Y.ravel(), np.zeros(X.size)]),
+        np.column_stack([x.ravel(), y.ravel(), np.zeros(x.size)]),
         [("line3", np.vstack(sides)), ("quad9", cells)],
         cell_data={"gmsh:physical": groups, "gmsh:geometrical": groups},
         field_data={**{name: np.array([tag, 1]) for name, tag in SIDES.items()},
