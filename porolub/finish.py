@@ -19,6 +19,7 @@ from porolub.io.table import print_comparison, print_results
 from porolub.io.terminal import new_console
 from porolub.scene import effects
 from porolub.solve.derived import scalars
+from porolub.solve.doubts import doubts
 from porolub.solve.gather import gather_fields, gather_state, gather_surface
 from porolub.solve.linear import final_preset
 from porolub.solve.options import text_of_options
@@ -74,6 +75,7 @@ def make_report(scene: Any, outcome: Outcome) -> Report:
     summary: dict[str, Any] = {
         "status": outcome.status, "message": outcome.message,
         **values, "error_estimate": dict(outcome.errors),
+        "warnings": doubts(scene, values, outcome.errors) if outcome.converged else [],
         "von_mises_max": float(stress) if model.law is not None else None,
         "jacobian_min": model.system.lowest_jacobian if model.law is not None else None,
         "effects": effects(scene), "dofs": counts, "ranks": comm.size,

@@ -37,6 +37,7 @@ KEYS = (
     "mass_balance_error",
     "load_balance_error",
     "error_estimate",
+    "warnings",
     "effects",
     "dofs",
     "ranks",

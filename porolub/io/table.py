@@ -25,6 +25,7 @@ from porolub.io.words import (
 )
 from porolub.scene import Scene
 from porolub.scene.derived import surface_speed
+from porolub.solve.doubts import VACUUM
 
 Row = tuple[str, str, str]
 Summary = dict[str, Any]
@@ -39,8 +40,6 @@ ESTIMATED = {
     "pressure_max": "highest fluid pressure",
 }
 """Numbers whose estimated errors are shown, and what they are called there."""
-VACUUM = -101325.0
-"""Pa, beside the atmosphere's pressure, which is 0 here."""
 ROUNDING = 1e-9
 """Relative; what is prescribed has no more error than that."""
 
@@ -55,6 +54,8 @@ def results_table(summary: Summary, scene: Scene) -> Table:
     title = Text(scene.title, style="bold")
     if summary.get("message"):
         title.append(f"\n{summary['message']}", style="not bold")
+    for warning in summary.get("warnings") or ():
+        title.append(f"\n{warning}", style="not bold yellow")
     table = Table(
         title=title,
         title_justify="left",
@@ -145,7 +146,7 @@ def _layer(summary: Summary) -> Iterator[Row]:
     if highest is not None:
         remark = "" if lowest is None else f"lowest {KILOPASCAL.text(lowest)}"
         if lowest is not None and lowest < VACUUM:
-            remark += ": below vacuum, where fluid would cavitate, which is not modelled"
+            remark += ": below vacuum"
         yield "highest fluid pressure", KILOPASCAL.text(highest), remark
     yield from _simple(
         summary,
@@ -181,6 +182,8 @@ def _estimated(summary: Summary) -> Iterator[Row]:
     if shown:
         first, _, size = shown[0].rpartition(" ")[0].rpartition(" ")
         yield "error, estimated", f"{size} %", ", ".join([first, *shown[1:]])
+    elif summary.get("status") == "converged" and not errors:
+        yield "error, estimated", "unknown", "no solution on coarser meshes to compare with"
 
 
 def _cost(summary: Summary) -> Iterator[Row]:

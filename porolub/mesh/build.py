@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from petsc4py import PETSc
 
 from porolub.errors import SceneError
+from porolub.mesh.cell import TRIANGLE
 from porolub.mesh.grading import graded_ticks, uniform_ticks
 from porolub.mesh.mesh import Mesh
 from porolub.mesh.raw import RawMesh, check_boundaries
@@ -21,6 +22,7 @@ from porolub.mesh.structured import structured
 Array = NDArray[np.float64]
 STANDARD = ("lubricated", "bone", "inlet", "outlet")
 """Boundaries that film and contact need in a mesh file."""
+FEWEST = 4  # elements along the surface of a coarsened mesh
 
 
 def build_mesh(
@@ -70,6 +72,19 @@ def build_mesh(
     ticks = comm.bcast(ticks)
     assert ticks is not None
     return structured(shape, ticks, comm, degree, triangles=triangles)
+
+
+def coarsened(mesh: Mesh, times: int, comm: MPI.Intracomm) -> Mesh | None:
+    """A structured mesh with every other line of vertices left out, so many times. Collective.
+
+    None for a mesh from a file and where less than FEWEST elements along the surface are left.
+    """
+    ticks = mesh.vertex_ticks
+    for _ in range(times):
+        ticks = tuple(np.append(line[:-1:2], line[-1]) for line in ticks)
+    if mesh.shape is None or len(ticks[0]) <= FEWEST:
+        return None
+    return structured(mesh.shape, ticks, comm, mesh.degree, triangles=mesh.cell is TRIANGLE)
 
 
 def _from_rank_0(comm: MPI.Intracomm, make: Callable[[], RawMesh]) -> RawMesh | None:

@@ -16,9 +16,10 @@ import numpy as np
 
 from porolub.solve.derived import scalars
 from porolub.solve.estimate import Numbers, RunErrors, relative
+from porolub.solve.levels import COARSEST
 from porolub.solve.neighbours import Neighbour
 from porolub.solve.newton import Clock
-from porolub.solve.steady import COARSEST, Outcome, SteadySolver
+from porolub.solve.steady import Outcome, SteadySolver
 from porolub.solve.transient import TransientSolver
 
 log = logging.getLogger(__name__)

@@ -1,10 +1,10 @@
 """How far the numbers of a run are from those of infinitely fine meshes and steps.
 
-In space: a steady solve goes through meshes of ever more elements anyway; what a number changed by
-from each to the next says how far it still is from its limit, whatever the number is (a
-goal-oriented estimate that costs nothing).  With order p it is |q_h - q_2h| / (2^p - 1); p is at
-least 1 where the meshes resolve what happens, so the last change itself is taken for the error:
-rather too large, by 3 for order 2.  Roache (1994) calls the like a grid convergence index.
+In space: what a number changes by from a mesh to one of twice the elements each way says how far it
+still is from its limit, whatever the number is.  With order p it is |q_h - q_2h| / (2^p - 1); p is
+at least 1 where the meshes resolve what happens, so the last change itself is taken for the error:
+rather too large, by 3 for order 2.  Roache (1994) calls the like a grid convergence index.  A
+steady solve goes through such meshes anyway; porolub.solve.coarser adds those that are missing.
 
 In time: what a number differs by from the polynomial through its last values is the scheme's local
 error but for a factor (Milne's device; Hairer, Norsett, Wanner 1993, III.7).  A layer forgets, so
@@ -29,6 +29,10 @@ QUANTITIES = ("friction_coefficient", "friction_fluid", "load_total", "load_soli
               "contact_pressure_max")
 """Numbers of a summary that have an error estimate."""
 
+MESHES = 3
+"""How many meshes are compared, at least where they can be had: two changes tell more than one,
+which is small by chance where a number comes to its limit from both sides."""
+
 SLOWEST = 1.2  # ratio of two changes below which convergence is not believed
 FASTEST = 4.0  # of order 2; above it the last change is small by chance
 
@@ -49,22 +53,23 @@ def mesh_error(levels: Sequence[Numbers], node: float) -> dict[str, float]:
         return {}
     found = {}
     for name in QUANTITIES:
-        values = [v for level in levels[-3:] if (v := level.get(name)) is not None]
-        if len(values) == len(levels[-3:]):
-            found[name] = _error([float(v) for v in values])
+        values = [level.get(name) for level in levels]
+        if None not in values[-2:]:
+            first = max((i + 1 for i, value in enumerate(values) if value is None), default=0)
+            found[name] = _error([float(v or 0.0) for v in values[first:]])
     if found.get("contact_length") is not None and levels[-1]["contact_length"]:
         found["contact_length"] = max(found["contact_length"], node)
     return found
 
 
 def _error(values: Sequence[float]) -> float:
-    """Of the last of two or three values."""
-    last = abs(values[-1] - values[-2])
-    if len(values) == 2:
+    """Of the last of two or more values."""
+    changes = np.diff(values)[::-1]  # the last first
+    expected = np.abs(changes) / FASTEST ** np.arange(len(changes))
+    last = float(expected.max())
+    if len(changes) == 1 or changes[0] * changes[1] <= 0.0 or last == 0.0:
         return last
-    before = abs(values[-2] - values[-3])
-    last = max(last, before / FASTEST)
-    ratio = before / last if last > 0.0 else FASTEST
+    ratio = abs(float(changes[1])) / last
     return last / (max(ratio, SLOWEST) - 1.0) if ratio < 2.0 else last
 
 

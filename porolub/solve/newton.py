@@ -31,7 +31,9 @@ LIMITS = {"u": 0.05, "p": 0.5, "l": np.inf, "v0": 0.03, "j": np.inf, "w": np.inf
 SHORT = 0.4  # a step cut below this counts as strongly shortened
 STALE = 1e-2  # share of the tolerance that an iteration with an old matrix may leave
 NEAR, FAST = 1e-3, 0.3  # size of an update, and how it must shrink, to keep the matrix
-WANDERS, VANISHED = 1e-5, 1e-9  # size of updates, share of the largest residuals: see _rounding
+FLIPPED = 1e-10  # residual of contact, scaled, above which nodes came into contact or left it
+WANDERS, VANISHED = 1e-5, 1e-7  # size of updates, share of the largest residuals: see _rounding
+LONG = 6  # iterations with such updates after which they are rounding
 UNDETERMINED = 1e9  # an update of this size, scaled, comes from a singular matrix
 NAMES = {"u": ("displacement", "thicknesses"), "p": ("fluid pressure", "layer moduli"),
          "l": ("contact pressure", "layer moduli"), "v0": ("approach", "thicknesses"),
@@ -44,7 +46,8 @@ class Clock:
 
     start: float = field(default_factory=time.perf_counter)
     spent: dict[str, float] = field(default_factory=lambda: {
-        "setup": 0.0, "assembly": 0.0, "linear_solve": 0.0, "output": 0.0})
+        "setup": 0.0, "assembly": 0.0, "linear_solve": 0.0, "output": 0.0,
+        "estimate": 0.0})  # of the errors: solves on coarser meshes
 
     def add(self, what: str, since: float) -> None:
         self.spent[what] += time.perf_counter() - since
@@ -98,9 +101,11 @@ class Newton:
         self._updates: dict[str, float] = {}
         self._damping, self._stalled, self._shortened = 1.0, 0, 0
         self._smallest, self._hopeless = float("inf"), 0  # update, iterations since
+        self._wandered = 0  # iterations with updates as small as rounding may be
         self._size = self._size_before = float("inf")  # of the last two updates, unshortened
         self._stale = False  # whether the last of them came from the matrix of the one before
         self._largest: dict[str, float] = {}  # residual so far, by field
+        self._first: dict[str, float] = {}  # residual that the first of all iterations began with
         self._previous_size = float("inf")
         self._solve_start: float | None = None
         self._why = ""
@@ -189,12 +194,14 @@ class Newton:
             self._updates, self._damping, self._largest = {}, 1.0, {}
             self._size = self._size_before = np.inf
             self._stalled, self._previous_size, self._shortened = 0, np.inf, 0
+            self._wandered = 0
             self._smallest, self._hopeless = np.inf, 0
             self._why, self._place = "", None
             if self.given(snes.getSolution()):
                 return CONVERGED
         record = self._record(iteration, snes)
-        self._largest = {name: max(norm, self._largest.get(name, 0.0))
+        self._first = self._first or record.residuals
+        self._largest = {name: max(norm, self._largest.get(name, self._first.get(name, 0.0)))
                          for name, norm in record.residuals.items()}
         if iteration > 0:
             self.iterations += 1
@@ -218,7 +225,9 @@ class Newton:
         if self._hopeless > self.hope:
             self._why = "Newton's steps do not get smaller"
             return DIVERGED
-        if self._damping == 1.0 and (self._close(size) or self._rounding(size, record)):
+        settled = record.residuals.get("l", 0.0) < FLIPPED  # these rows are linear piece by piece
+        if self._damping == 1.0 and ((self._close(size) and settled)
+                                     or self._rounding(size, record)):
             return CONVERGED
         if iteration >= self.max_iterations:
             name, unit = self._worst()
@@ -238,14 +247,16 @@ class Newton:
         return size * size < STALE * self.tolerance * self._size_before
 
     def _rounding(self, size: float, record: NewtonRecord) -> bool:
-        """Whether the updates are rounding: small, no longer shrinking, of a residual that is gone.
+        """Whether the updates are rounding: small for long, of a residual that is gone.
 
         What a nearly undrained layer determines only weakly, its mean pressure, wanders by more
-        than the tolerance for ever.
+        than the tolerance for ever.  A start that is settled already leaves nothing to fall: what
+        the first of all solves began with counts, too.
         """
+        self._wandered = self._wandered + 1 if size < WANDERS else 0
         gone = all(norm <= VANISHED * self._largest[name]
                    for name, norm in record.residuals.items())
-        return size < WANDERS and self._stalled > 0 and gone
+        return self._wandered >= LONG and gone
 
     def _not_defined(self) -> int:
         """The residual has no value at this state; say why."""

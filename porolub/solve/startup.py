@@ -23,6 +23,7 @@ PRESSED_IN = 0.05  # first guess of the approach for a straight start, thickness
 LIFTED = -0.01  # where the plane starts in the physical start-up
 STEP_LIMIT = {"u": 0.3, "p": 0.3, "l": 0.3, "v0": 0.3, "j": np.inf, "w": np.inf}
 PATIENCE = 2  # strongly shortened steps: a good guess converges at once or not at all
+STANDS_STILL, TRIES = 1e-6, 3  # change per step, and how often Newton may fail from such a state
 SMALLEST_SHARE = 2e-3  # of load or friction, below which a ramp is given up
 
 
@@ -159,6 +160,7 @@ class Starter:
         share = min(1.0, options.moved / max(options.first_step * self._body_speed(), 1e-300))
         dt, smallest, t = share * options.first_step, share * options.smallest_step, 0.0
         result = NewtonResult(False, 0, "the start-up did not settle")
+        in_vain = 0
         for _ in range(options.steps):
             system.backward_euler(system.physical(dofs.to_local(x)), dt)
             if operation.force is None and not settle:  # a prescribed approach comes down with time
@@ -182,6 +184,7 @@ class Starter:
             trial.copy(x)
             trial.destroy()
             if change < options.settled and dt > options.settled_after:
+                in_vain += change < STANDS_STILL and operation.approach == target
                 system.steady()
                 operation.approach = target
                 attempt = x.copy()
@@ -189,7 +192,7 @@ class Starter:
                 if result.converged:
                     attempt.copy(x)
                 attempt.destroy()
-                if result.converged:
+                if result.converged or in_vain == TRIES:
                     break
             dt *= 3.0 if step.iterations <= 3 else 2.0 if step.iterations <= 5 else 1.3
         system.steady()

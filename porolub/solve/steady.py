@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import logging
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -20,8 +20,10 @@ from mpi4py import MPI
 from petsc4py import PETSc
 
 from porolub.mesh import build_mesh
+from porolub.solve.coarser import with_coarser
 from porolub.solve.derived import scalars
-from porolub.solve.estimate import mesh_error, of_neighbours
+from porolub.solve.estimate import Numbers, mesh_error, of_neighbours
+from porolub.solve.levels import ALONE, Level, levels_of
 from porolub.solve.linear import Linear, final_preset
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
 from porolub.solve.neighbours import Neighbour, blended, blended_edges
@@ -37,36 +39,10 @@ from porolub.solve.zones import contact_edges
 
 log = logging.getLogger(__name__)
 FAILURES_ALLOWED = 2  # meshes without a steady state before the sequence is given up
-ALONE = {2: 3000, 3: 300}  # cells below which a mesh of the sequence is left to one rank
 EDGE_SIZE = 10e-6  # m; of the smallest elements unless the scene says
 EDGES_MOVED = 0.1  # thicknesses a place may lie off the one the mesh was refined toward
 HOPE = 3  # iterations from neighbours in which no update gets smaller
 WARM_ITERATIONS = 15  # of Newton from a blend of neighbours, before it is given up
-COARSEST = {2: 80, 3: 40}  # elements along the surface on the first mesh, at most
-
-
-@dataclass(frozen=True)
-class Level:
-    """A mesh of the sequence: element counts, and whether it is graded."""
-
-    along: int
-    across: int
-    deep: int = 0  # 0: in 2D
-    graded: bool = False
-
-    @property
-    def name(self) -> str:
-        counts = [n for n in (self.along, self.across, self.deep) if n]
-        return " x ".join(map(str, counts)) + (" graded" if self.graded else "")
-
-    @property
-    def cells(self) -> int:
-        return self.along * self.across * max(self.deep, 1)
-
-    def coarser(self) -> Level:
-        """Half the elements each way, but three where there were as many."""
-        across, deep = (min(n, max(3, -(-n // 2))) for n in (self.across, self.deep))
-        return Level(-(-self.along // 2), across, deep, self.graded)
 
 
 @dataclass(frozen=True)
@@ -112,20 +88,6 @@ class Outcome:
     def destroy(self) -> None:
         """Free all that PETSc holds."""
         _free(self.model, self.x)
-
-
-def levels_of(scene: Any) -> list[Level]:
-    """Mesh sequence of a scene, coarsest first; one entry without coarser meshes."""
-    mesh = scene.mesh
-    last = Level(mesh.along, mesh.across, mesh.deep, mesh.grading == "contact")
-    if scene.geometry.shape == "file" or lubricated_name(scene) is None:
-        return [last]
-    levels = [last]
-    while levels[0].along > COARSEST[scene.dimension]:
-        levels.insert(0, levels[0].coarser())
-    if last.graded:  # toward what?
-        levels.insert(0, replace(levels[0], graded=False))
-    return levels
 
 
 class SteadySolver:
@@ -206,7 +168,7 @@ class SteadySolver:
         before = Found()
         levels = levels_of(self.scene)
         failures = 0
-        numbers: dict[bool, list[dict[str, Any]]] = {False: [], True: []}  # by grading
+        numbers: dict[Level, Numbers] = {}
         for number, level in enumerate(levels):
             last = number == len(levels) - 1
             self.announce(level.name, (number + 1) / len(levels))
@@ -220,15 +182,13 @@ class SteadySolver:
             if last or found.preset == final_preset(self.scene):
                 refuse_unused_together(self._user_options, self.comm)
             failures += not found.result.converged
-            numbers[level.graded] += [found.numbers] if found.numbers else []
+            numbers[level] = found.numbers
             if last or failures == FAILURES_ALLOWED:
                 if model is None:
                     assert found.data is not None
                     model = self._model(level, scales, before.edges, self.comm)
                     x = restore(model, found.data)
-                alike = numbers[level.graded]
-                errors = mesh_error(numbers[False][-1:] + alike if level.graded else alike,
-                                    self._element(level, model) * scales.length)
+                errors = self._errors(level, numbers, model, x)
                 return self._outcome(found.result, model, x, before.edges, errors)
             if found.result.converged:
                 before = found
@@ -238,6 +198,19 @@ class SteadySolver:
             if model is not None:
                 _free(model, x)
         raise AssertionError("unreachable: the last level returns")
+
+    def _errors(self, level: Level, numbers: Mapping[Level, Numbers], model: Model, x: PETSc.Vec
+                ) -> dict[str, float]:
+        """Of the solution x on the last mesh, with the numbers found on it and on those before."""
+        start = time.perf_counter()
+        node = self._element(level, model) * self.scales.length
+        known = []
+        while numbers.get(level) and level.along > 1:
+            known.append(numbers[level])
+            level = level.halved()
+        errors = mesh_error(with_coarser(model, x, known, self._stop), node) if known else {}
+        self.clock.add("estimate", start)
+        return errors
 
     def _run(self, level: Level, scales: Any, before: Found, comm: Any,
              hand_on: bool) -> tuple[Model, PETSc.Vec, Found]:

@@ -44,6 +44,16 @@ class Snapshot:
         """The same without its rows: what other ranks need to know of what rank 0 has."""
         return replace(self, rows={name: rows[:0] for name, rows in self.rows.items()})
 
+    def gathered(self, comm: Any) -> Snapshot:
+        """The same with all rows on rank 0. Collective."""
+        if not self.shared:
+            return self
+        rows = {}
+        for name, block in self.rows.items():
+            blocks = comm.gather(block)
+            rows[name] = block[:0] if blocks is None else np.concatenate(blocks)
+        return replace(self, rows=rows, shared=False)
+
 
 def _axes(dim: int, f: Field) -> list[int]:
     return [k for k in range(dim) if f.support == "body" or k != 1]

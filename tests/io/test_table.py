@@ -57,6 +57,7 @@ def test_numbers_are_converted(summary: dict[str, Any], scene: Scene) -> None:
         "lowest volume ratio J": ["0.9512", ""],
         "load balance error": ["1.2e-13", "relative"],
         "fluid mass balance error": ["3.0e-12", "relative"],
+        "error, estimated": ["unknown", "no solution on coarser meshes to compare with"],
         "unknowns": [
             "165",
             "displacement 130, fluid pressure 21, contact pressure 13, approach 1",
@@ -78,6 +79,13 @@ def test_what_the_scene_lacks_is_left_out(dry_scene: Scene) -> None:
     numbers = {"load_total": 300.0, "load_solid": 300.0, "approach": None, "film_min": math.nan}
     rows = cells(results_table(numbers, dry_scene))
     assert list(rows) == ["[bold]Load[/]", "by the solid", "total"]
+
+
+def test_warnings_stand_under_the_message(summary: dict[str, Any], scene: Scene) -> None:
+    told = ["The mesh does not resolve this state.", "The fluid would cavitate."]
+    title = results_table(summary | {"warnings": told}, scene).title
+    assert isinstance(title, Text)
+    assert title.plain.splitlines()[-2:] == told
 
 
 def test_touching_nowhere_is_said(summary: dict[str, Any], scene: Scene) -> None:

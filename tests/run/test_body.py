@@ -19,7 +19,7 @@ from porolub.scene import Scene, load_scene
 from porolub.solve.report import SurfaceMap
 from tests.run.output import Output, run, shipped
 from tests.run.program import RUN, drawn_on_two
-from tests.run.test_ranks import FLOWS, NOT_COMPARED, ROUNDING
+from tests.run.test_ranks import FLOWS, NOT_COMPARED, ROUNDING, errors_like
 from tests.run.transient import ROW, same_frames, same_history, signalled
 
 WIDE = 1e-3  # m
@@ -55,6 +55,10 @@ def test_a_slab_has_the_summary_of_the_plane(slab: Output, plane: Output) -> Non
             size = 1e-6 * max(plane.summary[k] for k in FLOWS) if key in FLOWS else 0.0
             width = WIDE if key in PER_WIDTH else 1.0
             expected = pytest.approx(width * expected, rel=1e-6, abs=width * size)
+        elif key == "error_estimate":
+            expected = {name: pytest.approx((WIDE if name in PER_WIDTH else 1.0) * error, rel=1e-4,
+                                            abs=1e-6 * abs(slab.summary[name] or 0.0))
+                        for name, error in expected.items()}
         assert slab.summary[key] == expected, key
     assert all(slab.summary[key] < 1e-8 for key in ROUNDING)
     assert slab.summary["contact_width"] == pytest.approx(WIDE)
@@ -116,6 +120,8 @@ def test_a_crowned_barrel_on_any_number_of_ranks(run_mpi, tmp_path: Path) -> Non
             expected = summary[key]
             if isinstance(expected, float):
                 expected = pytest.approx(expected, rel=1e-8, abs=smallest.get(key, 1e-30))
+            elif key == "error_estimate":
+                expected = errors_like(summary, smallest)
             assert others[key] == expected, f"{key} on {ranks} ranks"
         np.testing.assert_array_equal(other_surface.cells, surface.cells)
         np.testing.assert_array_equal(other_fields.cells, fields.cells)

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from porolub.scene import load_scene
-from porolub.solve.steady import COARSEST, Level, levels_of
+from porolub.solve.levels import COARSEST, Level, levels_of
 from tests.mesh.scenes import sector_file
 from tests.solve.models import JOBS, block, case1
 

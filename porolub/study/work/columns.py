@@ -22,7 +22,7 @@ NESTED = ("dofs", "wall_time", "versions")
 """Keys of the summary that hold further keys."""
 _OF_RUNS = ("time", "periods")  # further keys of transient runs
 _READY = frozenset((float, int, type(None)))
-_TEXTS = (*FACTS[:3], "start", "effects")
+_TEXTS = (*FACTS[:3], "start", "effects", "warnings")
 
 _UNITS = {
     "load_total": ("N/m", "N"),
