@@ -24,8 +24,9 @@ def doubts(scene: Any, numbers: Numbers, errors: Numbers) -> list[str]:
     found = []
     uncertain = _uncertain(numbers, errors)
     if uncertain:
-        which = ", ".join(f"{NAMES[name]} by {100 * share:.2g} %"
-                          for name, share in sorted(uncertain.items(), key=lambda item: -item[1]))
+        shown = {name: f"{100 * share:.2g}" for name, share in uncertain.items()}
+        largest_first = sorted(shown, key=lambda name: -float(shown[name]))
+        which = ", ".join(f"{NAMES[name]} by {shown[name]} %" for name in largest_first)
         steps = " or the time steps do" if scene.time is not None else " does"
         found.append(f"The mesh{steps} not resolve this state: uncertain are {which} (estimated). "
                      f"{_advice(scene)}")

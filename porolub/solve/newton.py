@@ -46,8 +46,7 @@ class Clock:
 
     start: float = field(default_factory=time.perf_counter)
     spent: dict[str, float] = field(default_factory=lambda: {
-        "setup": 0.0, "assembly": 0.0, "linear_solve": 0.0, "output": 0.0,
-        "estimate": 0.0})  # of the errors: solves on coarser meshes
+        "setup": 0.0, "assembly": 0.0, "linear_solve": 0.0, "output": 0.0})
 
     def add(self, what: str, since: float) -> None:
         self.spent[what] += time.perf_counter() - since

@@ -202,15 +202,14 @@ class SteadySolver:
     def _errors(self, level: Level, numbers: Mapping[Level, Numbers], model: Model, x: PETSc.Vec
                 ) -> dict[str, float]:
         """Of the solution x on the last mesh, with the numbers found on it and on those before."""
-        start = time.perf_counter()
         node = self._element(level, model) * self.scales.length
         known = []
         while numbers.get(level) and level.along > 1:
             known.append(numbers[level])
             level = level.halved()
-        errors = mesh_error(with_coarser(model, x, known, self._stop), node) if known else {}
-        self.clock.add("estimate", start)
-        return errors
+        if not known:
+            return {}
+        return mesh_error(with_coarser(model, x, known, self.clock, self._stop), node)
 
     def _run(self, level: Level, scales: Any, before: Found, comm: Any,
              hand_on: bool) -> tuple[Model, PETSc.Vec, Found]:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from porolub.io.printed import APPENDIX_A, CASE_1, printed_for
 from porolub.io.table import comparison_table, print_comparison, print_results, results_table
