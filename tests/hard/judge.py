@@ -14,6 +14,7 @@ from mpi4py import MPI
 from porolub.errors import SceneError
 from porolub.scene import Scene
 from porolub.solve.derived import scalars
+from porolub.solve.doubts import UNCERTAIN, doubts
 from porolub.solve.gather import gather_surface
 from porolub.solve.report import SurfaceData
 from porolub.solve.steady import SteadySolver
@@ -33,6 +34,7 @@ class Steady:
     jacobian: float
     change: float
     values: dict[str, Any]
+    doubts: list[str]
     seen: Measures
     surface: SurfaceData | None
     dry_friction: float
@@ -47,10 +49,11 @@ def steady_of(scene: Scene) -> Steady:
     model, x = outcome.model, outcome.x
     surface = gather_surface(model, x)
     assert surface is None or isinstance(surface, SurfaceData)
+    values = scalars(model, x)
     found = Steady(outcome.converged, outcome.message, outcome.newton_iterations,
                    model.system.lowest_jacobian,
                    further_change(outcome) if outcome.converged else np.inf,
-                   scalars(model, x), measured(model, x), surface,
+                   values, doubts(scene, values, outcome.errors), measured(model, x), surface,
                    scene.contact.friction if scene.contact is not None else 0.0)
     outcome.destroy()
     return found
@@ -149,7 +152,10 @@ def criteria(case: Case, found: Steady | History) -> Verdicts:
 
 
 def compared(trial: Trial) -> Verdicts:
-    """The largest difference from the refined scene, and of which quantity."""
+    """The largest difference from the refined scene, and of which quantity.
+
+    A steady state that is off by more than is resolved must come with a warning.
+    """
     case = trial.case
     try:
         found = trial.found
@@ -161,7 +167,11 @@ def compared(trial: Trial) -> Verdicts:
     difference = (difference_of_states(found, finer) if isinstance(found, Steady)
                   else difference_of_runs(found, finer))
     name, worst = max(difference.items(), key=lambda item: item[1])
-    return {"reference": Verdict(worst <= case.within, f"{worst:.1%} {name}")}
+    text, silent = f"{worst:.1%} {name}", False
+    if isinstance(found, Steady) and worst > UNCERTAIN:
+        silent = not found.doubts
+        text += ", not warned of" if silent else ", warned of"
+    return {"reference": Verdict(worst <= case.within and not silent, text)}
 
 
 def difference_of_states(found: Any, finer: Any) -> dict[str, float]:

@@ -21,7 +21,7 @@ UNRESOLVED = {"within": 0.6, "bounds": Bounds(steady=1e-6, across=0.1)}
 """A layer on a sliding base comes with the J it leaves with, but for what drains on the way, so
 that alone sets its level. At 1e-18 m2 that happens 10 um below the surface; elements are 167 um
 high and drain too much: the approach is 178, 143, 130 um on 30 x 3, 60 x 6, 120 x 12. The matrix
-determines the level to six digits only. Nothing in the result says so but the finer mesh."""
+determines the level to six digits only. A warning says that the mesh does not resolve it."""
 THICK = (", but on the sliding base not a resolved one: thick fluid hardly drains into the film, "
          "so that the level of J and with it approach and friction hang on the elements.")
 VISCOUS = {"within": 0.9, "bounds": Bounds(steady=1e-6)}
@@ -37,9 +37,8 @@ NO_LEVEL = Case(
     "permeability", "1e-20 m2, sliding",
     "Exit code 3: the start-up settles, but no Newton step determines the level of J any more.",
     "case1", ("pores.permeability=1e-20 m^2",), fails="The steady solve failed", slow=True)
-"""Updates wander by 1e-6 to 1e-5 of the volume, which is rounding over what drains. Newton takes
-that for convergence only where residuals have fallen by 1e-9 (Newton._rounding), and from a settled
-start they are too small to fall; each of up to 400 start-up steps tries again, for minutes."""
+"""Updates wander by 1e-6 to 1e-4 of the volume, which is rounding over what drains: too much to be
+taken for convergence (Newton._rounding). Each of up to 400 start-up steps tries again, 40 s."""
 
 
 def steady_cases() -> list[Case]:

@@ -15,6 +15,7 @@ from porolub.solve.transient import TransientSolver
 from tests.solve.models import JOBS, case1
 
 COMM = MPI.COMM_WORLD
+FINEST = 900  # elements along the surface: more take more memory than a small machine has
 
 
 @pytest.fixture(autouse=True)
@@ -80,6 +81,7 @@ def test_what_is_not_reached_is_said() -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize(("job", "changes"), [
     ("case1.toml", ["load.force=700 N/m", "motion.speed=2 rad/s"]),
     ("case1.toml", ["load={approach='25 um'}"]),
@@ -89,12 +91,15 @@ def test_what_is_not_reached_is_said() -> None:
     ("case1.toml", ["pores.permeability=3 um^3/mm", "load.force=1 kN/m"]),
 ])
 def test_one_per_cent_is_met(job: str, changes: list[str]) -> None:
-    """Against a graded mesh of twice the elements each way; none of these was used to tune it."""
+    """Against a graded mesh of twice the elements each way, up to FINEST, half as long at the ends
+    of contact; none of these was used to tune it."""
     scene = load_scene(JOBS / job, ["accuracy={friction='1 %', load='1 %'}", *changes])
     outcome = AccurateSolver(scene, COMM).solve()
     assert outcome.converged, outcome.message
     mesh = outcome.model.scene.mesh
-    finer = mesh.model_copy(update={"along": 2 * mesh.along, "across": 2 * mesh.across})
+    along = min(2 * mesh.along, FINEST)
+    finer = mesh.model_copy(update={
+        "along": along, "across": round(mesh.across * along / mesh.along), "edge_size": 5e-6})
     plain = scene.model_copy(update={"mesh": finer, "accuracy": None})
     fine = SteadySolver(plain, COMM).solve()
     found, true = scalars(outcome.model, outcome.x), scalars(fine.model, fine.x)
