@@ -32,8 +32,9 @@ SHORT = 0.4  # a step cut below this counts as strongly shortened
 STALE = 1e-2  # share of the tolerance that an iteration with an old matrix may leave
 NEAR, FAST = 1e-3, 0.3  # size of an update, and how it must shrink, to keep the matrix
 FLIPPED = 1e-10  # residual of contact, scaled, above which nodes came into contact or left it
-WANDERS, VANISHED = 1e-5, 1e-7  # size of updates, share of the largest residuals: see _rounding
-LONG = 6  # iterations with such updates after which they are rounding
+ROUGH = 1e-4  # tolerance above which they may
+WANDERS, VANISHED = 1e-5, 1e-9  # size of updates, share of the largest residuals: see _rounding
+LONG, FAINT = 6, 1e-7  # iterations with such updates, and the share that is rounding then
 UNDETERMINED = 1e9  # an update of this size, scaled, comes from a singular matrix
 NAMES = {"u": ("displacement", "thicknesses"), "p": ("fluid pressure", "layer moduli"),
          "l": ("contact pressure", "layer moduli"), "v0": ("approach", "thicknesses"),
@@ -224,8 +225,7 @@ class Newton:
         if self._hopeless > self.hope:
             self._why = "Newton's steps do not get smaller"
             return DIVERGED
-        settled = record.residuals.get("l", 0.0) < FLIPPED  # these rows are linear piece by piece
-        if self._damping == 1.0 and ((self._close(size) and settled)
+        if self._damping == 1.0 and ((self._close(size) and self._settled(record))
                                      or self._rounding(size, record)):
             return CONVERGED
         if iteration >= self.max_iterations:
@@ -245,17 +245,24 @@ class Newton:
             return size < self.tolerance
         return size * size < STALE * self.tolerance * self._size_before
 
+    def _settled(self, record: NewtonRecord) -> bool:
+        """Whether no node came into contact or left it: these rows are linear piece by piece, so
+        nothing is left of them then.  Steps of a start-up, on the way to elsewhere, need not be."""
+        return self.tolerance > ROUGH or record.residuals.get("l", 0.0) < FLIPPED
+
     def _rounding(self, size: float, record: NewtonRecord) -> bool:
-        """Whether the updates are rounding: small for long, of a residual that is gone.
+        """Whether the updates are rounding: small and no longer shrinking, or small for long, of a
+        residual that is gone.
 
         What a nearly undrained layer determines only weakly, its mean pressure, wanders by more
         than the tolerance for ever.  A start that is settled already leaves nothing to fall: what
         the first of all solves began with counts, too.
         """
         self._wandered = self._wandered + 1 if size < WANDERS else 0
-        gone = all(norm <= VANISHED * self._largest[name]
+        share = FAINT if self._wandered >= LONG else VANISHED
+        gone = all(norm <= share * self._largest[name]
                    for name, norm in record.residuals.items())
-        return self._wandered >= LONG and gone
+        return size < WANDERS and gone and (self._stalled > 0 or self._wandered >= LONG)
 
     def _not_defined(self) -> int:
         """The residual has no value at this state; say why."""
