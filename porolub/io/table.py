@@ -178,12 +178,16 @@ def _estimated(summary: Summary) -> Iterator[Row]:
         if value and error is not None and error > ROUNDING * abs(value):
             found[label] = error / abs(value)
     largest_first = sorted(found, key=lambda label: -found[label])
-    shown = [f"{label} {100 * found[label]:.2g} %" for label in largest_first]
+    shown = [f"{label} {_percent(found[label])} %" for label in largest_first]
     if shown:
         first, _, size = shown[0].rpartition(" ")[0].rpartition(" ")
         yield "error, estimated", f"{size} %", ", ".join([first, *shown[1:]])
     elif summary.get("status") == "converged" and not errors:
         yield "error, estimated", "unknown", "no solution on coarser meshes to compare with"
+
+
+def _percent(share: float) -> str:
+    return f"{100 * share:.2g}" if share < 1.0 else f"{100 * share:.0f}"
 
 
 def _cost(summary: Summary) -> Iterator[Row]:

@@ -24,7 +24,7 @@ def doubts(scene: Any, numbers: Numbers, errors: Numbers) -> list[str]:
     found = []
     uncertain = _uncertain(numbers, errors)
     if uncertain:
-        shown = {name: f"{100 * share:.2g}" for name, share in uncertain.items()}
+        shown = {name: f"{100 * share:.0f}" for name, share in uncertain.items()}
         largest_first = sorted(shown, key=lambda name: -float(shown[name]))
         which = ", ".join(f"{NAMES[name]} by {shown[name]} %" for name in largest_first)
         steps = " or the time steps do" if scene.time is not None else " does"

@@ -24,7 +24,7 @@ def test_nothing_where_errors_are_small_or_unknown() -> None:
 
 def test_uncertain_numbers_are_named_largest_first_with_what_to_try() -> None:
     sentence, = said({}, {"approach": 0.4e-4, "friction_coefficient": 0.3, "contact_length": 1e-4})
-    assert "uncertain are friction by 1.5e+02 %, approach by 40 % (estimated)" in sentence
+    assert "uncertain are friction by 150 %, approach by 40 % (estimated)" in sentence
     assert 'mesh.along and mesh.across or mesh.grading = "contact"' in sentence
 
 
