@@ -126,7 +126,7 @@ def test_a_load_that_keeps_pulling_ends_with_what_has_happened(base: str) -> Non
 
 
 @pytest.mark.parametrize(("base", "depth"), [
-    ("bonded", 40.0), pytest.param("sliding", 80.0, marks=slow)])
+    ("bonded", 40.0), ("sliding", 80.0)])
 def test_a_plane_that_is_lifted_off_and_pressed_in_again(base: str, depth: float) -> None:
     """10 um off for 0.1 s with the film between; afterwards the load is that of before."""
     path = samples("0 100 200 300", f"{depth} -10 -10 {depth}", "um")
