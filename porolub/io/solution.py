@@ -6,7 +6,6 @@
     ticks/K        logical positions of the vertices along axis K
     edges          (m,) arc positions, m
     marks          attributes: arc positions by name, m
-    errors         attributes: relative errors of the summary's numbers by name
     scalars        attributes: values by name
     rows/NAME      (k, components) of each field, by the numbers of its nodes
 
@@ -47,7 +46,6 @@ def write_solution(path: Path, solution: Solution, comm: Any = ALONE) -> None:
         for axis, line in enumerate(data.ticks):
             file.whole(f"ticks/{axis}", line)
         file.groups["marks"] = dict(solution.marks)
-        file.groups["errors"] = dict(solution.errors)
         file.groups["scalars"] = dict(data.scalars)
         for name, rows in data.rows.items():
             file.rows(f"rows/{name}", rows, "f8")
@@ -68,13 +66,13 @@ def read_solution(path: Path, comm: Any = ALONE) -> Solution:
             with h5py.File(path, "r") as file:
                 ticks = tuple(file[f"ticks/{axis}"][()] for axis in range(len(file["ticks"])))
                 rows = {name: mine(block) for name, block in file["rows"].items()}
-                scalars, marks, errors = (
+                scalars, marks = (
                     {name: float(value) for name, value in file[group].attrs.items()}
-                    for group in ("scalars", "marks", "errors")
+                    for group in ("scalars", "marks")
                 )
                 data = Snapshot(ticks, rows, scalars, comm.size > 1)
                 edges = tuple(file["edges"][()].tolist())
-                return Solution(data, float(file.attrs["length"]), edges, marks, errors)
+                return Solution(data, float(file.attrs["length"]), edges, marks)
         except DAMAGED as error:
             raise SceneError(f"{path}: this is no solution to start from ({error}).") from error
 

@@ -84,15 +84,6 @@ def absolute(relative_errors: Numbers, numbers: Numbers) -> dict[str, float]:
             if e is not None and (v := numbers.get(k)) is not None}
 
 
-def of_neighbours(known: Sequence[Numbers], numbers: Numbers) -> dict[str, float]:
-    """Absolute errors of numbers that were found next to others on a mesh like theirs.
-
-    ``known``: relative errors of the others; the largest of them counts.
-    """
-    names = [k for k in QUANTITIES if all(k in errors for errors in known)]
-    return absolute({k: max(float(e[k] or 0.0) for e in known) for k in names}, numbers)
-
-
 def time_error(times: Array, values: Array, order: int) -> float:
     """Of numbers (n,) found at times (n,) by BDF of an order, over all of the run."""
     n = order + 1  # points that the polynomial goes through

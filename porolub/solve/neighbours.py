@@ -8,8 +8,8 @@ be neither open nor closed.  So each is stretched along the surface until its ed
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -30,14 +30,13 @@ class Solution:
 
     length: of the lubricated surface, m; edges: arc positions (m) worth fine elements; marks: arc
     positions (m) by name of what a blend must not smear, contact's ends (if anything touches) and
-    those of the pressurised zone; errors: relative, by name of a summary's number.
+    those of the pressurised zone.
     """
 
     data: Snapshot
     length: float
     edges: tuple[float, ...]
     marks: dict[str, float]
-    errors: dict[str, float] = field(default_factory=dict)
 
     @property
     def closed(self) -> bool:
@@ -80,8 +79,8 @@ def _resized(data: Snapshot, sizes: dict[str, float]) -> Snapshot:
                    scalars={k: value * sizes[k] for k, value in data.scalars.items()})
 
 
-def solution_of(model: Model, x: PETSc.Vec, errors: Mapping[str, float] | None = None) -> Solution:
-    """Take up a state and the relative errors of its numbers. Collective.
+def solution_of(model: Model, x: PETSc.Vec) -> Solution:
+    """Take up a state. Collective.
 
     ValueError for a mesh from a file: only structured ones can be carried to another.
     """
@@ -89,7 +88,7 @@ def solution_of(model: Model, x: PETSc.Vec, errors: Mapping[str, float] | None =
     length = model.scales.length
     marks = {f"{name} {k}": ends[k] * length for name, ends in zones(model, x) for k in range(2)}
     return Solution(_resized(snapshot(model, x), sizes), model.mesh.shape.length * length,
-                    tuple(e * length for e in contact_edges(model, x)), marks, dict(errors or {}))
+                    tuple(e * length for e in contact_edges(model, x)), marks)
 
 
 def blended(model: Model, neighbours: Sequence[Neighbour]) -> PETSc.Vec:

@@ -22,7 +22,7 @@ from petsc4py import PETSc
 from porolub.mesh import build_mesh
 from porolub.solve.coarser import with_coarser
 from porolub.solve.derived import scalars
-from porolub.solve.estimate import Numbers, mesh_error, of_neighbours
+from porolub.solve.estimate import Numbers, mesh_error
 from porolub.solve.levels import ALONE, Level, levels_of
 from porolub.solve.linear import Linear, final_preset
 from porolub.solve.model import Model, build_model, lubricated_name, scales_of
@@ -138,8 +138,8 @@ class SteadySolver:
             return None
         refuse_unused_together(self._user_options, self.comm)
         self.warm = True
-        errors = of_neighbours([n.solution.errors for n in self.neighbours],
-                               scalars(model, found[0]))
+        last = levels_of(self.scene)[-1]
+        errors = self._errors(last, {last: scalars(model, found[0])}, model, found[0])
         return self._outcome(found[1], model, found[0], edges, errors)
 
     def _warm(self, model: Model, x: PETSc.Vec) -> tuple[PETSc.Vec, NewtonResult] | None:

@@ -20,8 +20,7 @@ def made_up(scalars: dict[str, float], marks: dict[str, float]) -> Solution:
     ticks = (np.sort(random.random(13)), np.linspace(0.0, 1.0, 4))
     rows = {"u": random.normal(size=(175, 2)), "p": random.normal(size=(52, 1)) * 1e6}
     edges = (-0.004, 0.005) if marks else ()
-    errors = {"load_total": 1e-3, "friction_coefficient": 0.1 / 3} if marks else {}
-    return Solution(Snapshot(ticks, rows, scalars, False), 0.0175, edges, marks, errors)
+    return Solution(Snapshot(ticks, rows, scalars, False), 0.0175, edges, marks)
 
 
 WHOLE = made_up({"v0": 1.1e-4}, {"closed 0": -0.004, "pressurised 0": -0.003, "closed 1": 0.1 / 3})

@@ -5,6 +5,7 @@ import signal
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -15,7 +16,9 @@ from porolub.io.history import read_history
 from porolub.io.log import close_logging
 from porolub.io.summary import read_summary
 from porolub.run_transient import restart
+from porolub.solve.newton import Newton
 from tests.run.output import Output
+from tests.run.test_ranks import errors_like
 from tests.run.transient import (
     ITERATION,
     KINKS,
@@ -88,7 +91,9 @@ def test_a_step_that_was_under_way_is_done_again(
 ) -> None:
     """The files of the stopped run are those of its last accepted step."""
     start, all_of_them = smooth.history[0]["newton_iterations"], smooth.summary["newton_iterations"]
-    iteration = round(start + share * (all_of_them - start))
+    with patch.object(Newton, "jacobian", autospec=True, side_effect=Newton.jacobian) as counted:
+        stopped(tmp_path / "start", smooth.scene, ROW, 1)  # coarser meshes have iterations, too
+    iteration = round(counted.call_count + share * (all_of_them - start))
     stopped(tmp_path, smooth.scene, ITERATION, iteration, number=signal.SIGINT)
     last, summary = Output(tmp_path, smooth.scene).history[-1], read_summary(
         tmp_path / "summary.json")
@@ -113,6 +118,8 @@ def test_a_run_may_be_stopped_again_and_again(smooth: Output, tmp_path: Path) ->
         value = expected[key]
         if isinstance(value, float):
             value = pytest.approx(value, rel=1e-7, abs=1e-12)
+        elif key == "error_estimate":
+            value = errors_like(expected, {})
         assert sums[key] == value, key
     assert sums["mass_balance_error"] == pytest.approx(expected["mass_balance_error"], abs=1e-9)
 

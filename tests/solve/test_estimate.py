@@ -12,7 +12,6 @@ from porolub.solve.estimate import (
     RunErrors,
     absolute,
     mesh_error,
-    of_neighbours,
     relative,
     time_error,
 )
@@ -60,9 +59,7 @@ def test_contact_ends_at_a_node() -> None:
     assert mesh_error([{"contact_length": 0.0}] * 2, 1e-5) == {"contact_length": 0.0}
 
 
-def test_neighbours_hand_on_the_largest_relative_error() -> None:
-    known = [{NAME: 0.1, "approach": 0.2}, {NAME: 0.3}]
-    assert of_neighbours(known, {NAME: -2.0, "approach": 1.0}) == {NAME: pytest.approx(0.6)}
+def test_relative_errors_and_back() -> None:
     assert relative({NAME: 0.5, "approach": 1.0}, {NAME: -2.0, "approach": 0.0}) == {NAME: 0.25}
     assert absolute({NAME: 0.25}, {NAME: -2.0}) == {NAME: 0.5}
 

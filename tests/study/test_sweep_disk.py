@@ -31,7 +31,7 @@ TABLE = r"disk/here: the table of the sweep cannot be written \({}\)\. \d of 3 c
 FIGURES = r"disk/here: the figures cannot be written \({}\)\. 3 of 3 cases are done; .*"
 DISKS = {
     "tmpfs": ("No space left on device",
-              {4096: INPUT, 8192: STATE, 24_576: JOURNAL, 40_960: TABLE, 143_360: FIGURES}),
+              {4096: INPUT, 8192: STATE, 24_576: JOURNAL, 40_960: TABLE, 163_840: FIGURES}),
     "file": ("File too large", {500: INPUT, 3000: STATE, 20_000: TABLE, 50_000: FIGURES}),
 }  # fmt: skip
 """What the kernel says, and what does not fit onto a disk, or into a file, of so many bytes."""

@@ -176,7 +176,7 @@ def test_a_body_has_other_units(tmp_path: Path) -> None:
 
 
 def test_each_number_of_the_summary_has_a_unit_or_none_on_purpose() -> None:
-    texts = {"status", "message", "effects", "versions"}
+    texts = {"status", "message", "warnings", "effects", "versions"}
     plain = {*LIKE, "load_ratio", "friction_coefficient", "friction_fluid", "jacobian_min",
              "mass_balance_error", "load_balance_error", "dofs", "ranks", "newton_iterations",
              "linear_iterations", "time_steps", "rejected_steps"}  # fmt: skip

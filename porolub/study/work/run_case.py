@@ -23,7 +23,6 @@ from porolub.io.progress import Progress
 from porolub.io.solution import read_solution, write_solution
 from porolub.run_transient import Recorder, begin, recorded
 from porolub.solve.accurate import chosen_in_time, steady_solver
-from porolub.solve.estimate import relative
 from porolub.solve.neighbours import Neighbour, solution_of
 from porolub.solve.options import UnusedOption
 from porolub.solve.steady import Outcome
@@ -119,8 +118,7 @@ class Cases:
             with _in_trouble():
                 summary = self._finish(outcome.model.scene, outcome, directory)
                 if task.wanted and outcome.converged and outcome.model.mesh.shape is not None:
-                    errors = relative(outcome.errors, summary)
-                    state = solution_of(outcome.model, outcome.x, errors)
+                    state = solution_of(outcome.model, outcome.x)
                     write_solution(self._state(task.case.key), state, comm)
             outcome.destroy()
             return summary, task.starts if steady.warm else ()
